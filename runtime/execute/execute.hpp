@@ -1,0 +1,70 @@
+#pragma once
+
+#include "plan/plan.hpp"
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace bodeflow::execute {
+
+/// Takes what a run keeps. Calls about one port come from one thread at a time; different ports may come from different threads.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// New samples of a recorded stream output (index into Phase::recorded): one address a channel. Throws nothing; an
+  /// error (disk full) is returned and ends the run.
+  virtual tl::expected<void, std::string> samples(int recorded, const void* const* channels, std::uint64_t count) = 0;
+  /// A record of any message output of the phase, at its producer's time.
+  virtual tl::expected<void, std::string> record(graph::End from, const SharedRecord& record, double time_s) = 0;
+  /// A live parameter took a value before sample `position` of its block.
+  virtual void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position) = 0;
+};
+
+struct Progress {
+  double time_s = 0.0;      ///< of the run's clock, done
+  double total_s = 0.0;     ///< 0: not known
+  double rate = 0.0;        ///< seconds of the run's clock per second of wall time
+};
+
+struct Options {
+  std::uint64_t seed = 1;
+  graph::Clock clock = graph::Clock::simulated;
+  double watchdog_s = 10.0;
+  std::uint64_t first_chunk = 0;  ///< repetitions of a shorter first chunk (tests of bit-identity); 0: none
+  std::int64_t call_limit = 0;    ///< most firings in one process call, 0: as many as the chunk has
+  const std::atomic<bool>* stop = nullptr;                ///< set: end now, as partial
+  std::function<void(const Progress&)> progress;          ///< called a few times a second from a thread of its own
+  bool metrics = true;                                    ///< time and calls of each block
+};
+
+/// A record of an earlier phase for a message input, delivered at time zero.
+struct InitialRecord {
+  graph::End to;
+  SharedRecord record;
+};
+
+struct BlockMetrics {
+  std::uint64_t calls = 0, firings = 0;
+  double seconds = 0.0;           ///< sampled, scaled up
+  std::uint64_t dropped = 0;      ///< input samples left over at the end of the streams
+};
+
+struct Outcome {
+  enum class Status { complete, partial };
+  Status status = Status::complete;
+  bool interrupted = false;       ///< by Options::stop
+  int failed_block = -1;          ///< whose error ended the run, or -1
+  std::string reason;             ///< why a run is partial
+  double time_s = 0.0;            ///< of the run's clock that was done
+  double wall_s = 0.0;
+  std::vector<BlockMetrics> metrics;
+};
+
+/// Runs a planned phase to its end: activates, processes, finishes, deactivates the instances. Never throws.
+Outcome execute(const graph::Phase& phase, const plan::Facts& facts, const plan::Plan& plan,
+                const std::vector<std::unique_ptr<Instance>>& instances, const std::vector<InitialRecord>& initial, Sink& sink,
+                const Options& options);
+
+}  // namespace bodeflow::execute

@@ -1,0 +1,116 @@
+#pragma once
+
+#include "graph/graph.hpp"
+#include "plugins/instance.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+#include <tl/expected.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace bodeflow::plan {
+
+/// What is true of a phase once every block is resolved: indices follow Phase::blocks, ports their kind-and-direction index.
+struct Facts {
+  struct Block {
+    std::vector<StreamFacts> inputs;  ///< known = false: unconnected
+    std::vector<StreamFacts> outputs;
+    std::vector<Flow> input_flows;
+    std::vector<Flow> output_flows;
+    Rate firing_rate;                 ///< firings per second; zero for a block without streams
+    std::int64_t repetitions = 0;     ///< firings per period of the whole phase; zero for a block without streams
+    std::int64_t firings = -1;        ///< until the block's own or the run's end; -1: no end known
+  };
+  std::vector<Block> blocks;
+  Rate period;                        ///< seconds of one repetition of the phase; zero without streams
+  std::vector<std::string> warnings;
+};
+
+/// Makes and configures the instances of a phase.
+tl::expected<std::vector<std::unique_ptr<Instance>>, Problems> instantiate(const graph::Phase& phase, Registry& registry,
+                                                                           std::shared_ptr<const HostServices> services);
+
+/// Resolves all blocks to a fixed point, checks every edge (element, channels, rate, unit, clock domain), solves the
+/// balance equations. Errors name both ports, both blocks and both values.
+tl::expected<Facts, Problems> establish_facts(const graph::Phase& phase, const std::vector<std::unique_ptr<Instance>>& instances);
+
+/// Memory for the samples of one stream output, or of one delayed edge.
+struct Buffer {
+  std::uint32_t element = BF_F64;
+  std::uint32_t channels = 1;
+  std::uint64_t history = 0;     ///< samples kept from chunk to chunk before the new ones (largest delay of its readers)
+  std::uint64_t capacity = 0;    ///< new samples of one chunk, at most
+  std::uint32_t slots = 1;       ///< more than one: a ring between two threads, a slot a chunk
+  std::uint64_t arena_offset = 0;///< bytes from the start of its partition's arena; buffers that do not live at the same time overlap
+  std::uint64_t bytes = 0;       ///< of all slots, each channel padded to 64 bytes
+  int partition = 0;             ///< whose arena it lies in: the writer's
+};
+
+/// Which buffer a stream port uses.
+struct Use {
+  int buffer = -1;               ///< -1: unconnected
+  std::uint64_t delay = 0;       ///< samples that the reader is behind the writer
+};
+
+/// `count` firings of a block, within a schedule.
+struct Firing {
+  int block = 0;
+  std::int64_t count = 1;
+};
+
+/// One entry of the flat list of a thread.
+struct Step {
+  enum class Kind {
+    call,     ///< one block, all its firings of the chunk
+    cluster,  ///< the blocks of a feedback loop, by `schedule`, until the chunk is done
+    copy      ///< from one buffer to another (a delayed edge with initial values of its own)
+  };
+  Kind kind = Kind::call;
+  int block = 0;                       ///< call
+  std::vector<Firing> schedule;        ///< cluster: one pass
+  std::int64_t repetitions = 1;        ///< cluster: repetitions of the phase's period in one pass
+  int from_buffer = -1, to_buffer = -1;///< copy
+};
+
+/// What one thread does in each chunk, in order.
+struct Partition {
+  std::vector<Step> steps;
+  std::uint64_t arena_bytes = 0;
+  double cost_ns = 0.0;                ///< declared, for one period of the phase
+};
+
+struct Plan {
+  std::int64_t repetitions = 1;        ///< periods of the phase in one chunk
+  std::vector<Partition> partitions;   ///< at least one
+  std::vector<Buffer> buffers;
+  /// Per block: the buffer of each stream input and output. A delayed input reads at history - delay.
+  std::vector<std::vector<Use>> inputs, outputs;
+  std::vector<int> partition_of;       ///< per block
+  /// Per stream buffer that crosses threads: the partitions that read it (beside the writer's own).
+  std::vector<std::vector<int>> readers;
+  /// Blocks in a topological order of stream and message edges (delayed edges left out): the order of finish.
+  std::vector<int> order;
+  /// Initial values that stand in a buffer's history at the start: channels x history, channel after channel (c64: pairs).
+  std::vector<std::vector<double>> initial;
+  std::uint64_t bytes = 0;             ///< of all buffers and rings
+  double chunk_s = 0.0;
+  double latency_s = 0.0;              ///< from a sample's arrival to the last block's output, at most
+};
+
+struct PlanOptions {
+  std::int64_t chunk = 1024;
+  std::optional<double> latency_s;
+  int threads = 1;
+  std::vector<graph::End> kept;        ///< stream outputs that are recorded: their buffers live to the end of the chunk
+};
+
+/// The plan of a phase; a value: the same input gives the same plan. Errors name deadlocked loops with their cycle and missing samples.
+tl::expected<Plan, Problems> make_plan(const graph::Phase& phase, const Facts& facts, const PlanOptions& options);
+
+/// For people, and for scripts.
+std::string to_text(const graph::Phase& phase, const Facts& facts, const Plan& plan);
+nlohmann::json to_json(const graph::Phase& phase, const Facts& facts, const Plan& plan);
+
+}  // namespace bodeflow::plan

@@ -218,6 +218,8 @@ typedef struct bf_activation {
   uint64_t max_count; /* most firings in one process call */
   uint64_t seed;      /* of this block: derived from the run's seed and the block's name */
   bf_rate rate;       /* firings per second; num = 0 for a block without streams */
+  uint32_t vector_level; /* widest vector unit that kernels may use: x86-64 level 1 (SSE2), 3 (AVX2), 4 (AVX-512) */
+  uint32_t reserved;
 } bf_activation;
 
 /* One stream port during a process call: channel c begins at channels[c] + offset * element size. */

@@ -32,6 +32,7 @@ struct Options {
   std::uint64_t seed = 1;
   graph::Clock clock = graph::Clock::simulated;
   double watchdog_s = 10.0;
+  std::uint32_t vector_level = 1; ///< bf_activation::vector_level
   std::uint64_t first_chunk = 0;  ///< repetitions of a shorter first chunk (tests of bit-identity); 0: none
   std::int64_t call_limit = 0;    ///< most firings in one process call, 0: as many as the chunk has
   const std::atomic<bool>* stop = nullptr;                ///< set: end now, as partial

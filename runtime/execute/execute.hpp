@@ -57,6 +57,7 @@ struct Outcome {
   Status status = Status::complete;
   bool interrupted = false;       ///< by Options::stop
   int failed_block = -1;          ///< whose error ended the run, or -1
+  bool hung = false;              ///< a block never came back: its thread lives on, so neither instances nor libraries may be freed
   std::string reason;             ///< why a run is partial
   double time_s = 0.0;            ///< of the run's clock that was done
   double wall_s = 0.0;

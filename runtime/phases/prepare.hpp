@@ -1,0 +1,28 @@
+#pragma once
+
+#include "plan/plan.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace bodeflow::phases {
+
+/// A phase that is ready to run.
+struct Prepared {
+  std::vector<std::unique_ptr<Instance>> instances;  ///< configured and resolved
+  plan::Facts facts;
+  plan::Plan plan;
+};
+
+/// What the command line says over the graph's own `run` settings.
+struct PlanSettings {
+  std::optional<int> threads;
+  std::optional<std::int64_t> chunk;
+};
+
+/// The prepared phase: blocks made, facts established, plan made. Errors are those of these three steps, the first that has any.
+tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& registry, std::shared_ptr<const HostServices> services,
+                                         const PlanSettings& settings);
+
+}  // namespace bodeflow::phases

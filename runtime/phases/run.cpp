@@ -1,0 +1,125 @@
+#include "phases/run.hpp"
+
+#include "phases/condition.hpp"
+#include "phases/sweep.hpp"
+
+#include <fmt/format.h>
+
+namespace bodeflow::phases {
+namespace {
+
+RunResult failure(const graph::Phase& phase, std::string reason) {
+  return {RunResult::Status::failed, phase.name, "", std::move(reason), {}, false};
+}
+
+RunResult rejection(const graph::Phase& phase, Problems problems) {
+  return {RunResult::Status::rejected, phase.name, "", to_string(problems), std::move(problems), false};
+}
+
+tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(const graph::Phase& phase, const record::RunDirectory& directory) {
+  std::vector<execute::InitialRecord> records;
+  Problems problems;
+  for (const auto& reference : phase.references) {
+    SharedRecord record = directory.last_record(reference.phase, reference.block, reference.port);
+    if (record)
+      records.push_back({reference.to, std::move(record)});
+    else
+      problems.push_back({reference.place, fmt::format("'${}.{}.{}': that phase sent no such record", reference.phase, reference.block,
+                                                       reference.port)});
+  }
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  return records;
+}
+
+RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDirectory& directory, const RunOptions& options, int repeat) {
+  auto initial = initial_records(phase, directory);
+  if (!initial) return rejection(phase, initial.error());
+  const auto sink = directory.begin_phase(phase, prepared.facts, plan::to_json(phase, prepared.facts, prepared.plan), repeat);
+  if (!sink) return failure(phase, sink.error());
+
+  execute::Options execution;
+  execution.seed = phase.run.seed;
+  execution.clock = phase.run.clock;
+  execution.watchdog_s = phase.run.watchdog_s;
+  execution.vector_level = options.vector_level;
+  execution.stop = options.stop;
+  if (options.progress) execution.progress = [&](const execute::Progress& progress) { options.progress(phase.name, progress); };
+  const execute::Outcome outcome =
+      execute::execute(phase, prepared.facts, prepared.plan, prepared.instances, *initial, **sink, execution);
+  const auto ended = directory.end_phase(outcome);
+
+  RunResult result;
+  result.phase = phase.name;
+  result.hung = outcome.hung;
+  if (result.hung)  // the stuck block must not be destroyed under its thread
+    for (auto& instance : prepared.instances) (void)instance.release();
+  if (outcome.interrupted) {
+    result.status = RunResult::Status::interrupted;
+    result.reason = outcome.reason;
+  } else if (outcome.status != execute::Outcome::Status::complete) {
+    result.status = RunResult::Status::failed;
+    if (outcome.failed_block >= 0) result.block = phase.blocks[static_cast<std::size_t>(outcome.failed_block)].name;
+    result.reason = outcome.reason;
+  } else if (!ended) {
+    return failure(phase, ended.error());
+  }
+  return result;
+}
+
+/// True unless the condition is there and does not hold.
+tl::expected<bool, Problem> allowed(const std::optional<graph::Condition>& condition, const record::RunDirectory& directory) {
+  if (!condition) return true;
+  return holds(*condition, directory.last_record(condition->phase, condition->block, condition->port));
+}
+
+}  // namespace
+
+tl::expected<std::vector<Prepared>, Problems> prepare_all(const graph::Graph& graph, Registry& registry,
+                                                          const Services& services, const PlanSettings& settings) {
+  std::vector<Prepared> all;
+  Problems problems;
+  for (const auto& phase : graph.phases) {
+    auto prepared = prepare(phase, registry, services.host(), settings);
+    if (prepared)
+      all.push_back(std::move(*prepared));
+    else
+      problems.insert(problems.end(), prepared.error().begin(), prepared.error().end());
+  }
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  return all;
+}
+
+RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registry& registry, record::RunDirectory& directory,
+              const Services& services, const RunOptions& options) {
+  for (std::size_t i = 0; i < graph.phases.size(); ++i) {
+    const graph::Phase& phase = graph.phases[i];
+    const auto wanted = allowed(phase.when, directory);
+    if (!wanted) return rejection(phase, {wanted.error()});
+    if (!*wanted) {
+      directory.event("phase skipped", {{"phase", phase.name}});
+      continue;
+    }
+    for (int repeat = 0; repeat < phase.repeat_max; ++repeat) {
+      RunResult result;
+      if (!phase.sweep.empty()) {
+        result = run_sweep(graph, phase, directory, options);
+      } else {
+        if (repeat > 0) {
+          auto again = prepare(phase, registry, services.host(), options.plan);
+          if (!again) return rejection(phase, again.error());
+          prepared[i] = std::move(*again);
+        }
+        result = run_once(phase, std::move(prepared[i]), directory, options, repeat);
+      }
+      if (result.status != RunResult::Status::complete) return result;
+      if (phase.until) {
+        const auto enough = allowed(phase.until, directory);
+        if (!enough) return rejection(phase, {enough.error()});
+        if (*enough) break;
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace bodeflow::phases

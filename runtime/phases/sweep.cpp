@@ -1,0 +1,156 @@
+#include "phases/sweep.hpp"
+
+#include "graph/load.hpp"
+#include "phases/worker_pool.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace bodeflow::phases {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The values of each axis in each run: runs x axes.
+std::vector<std::vector<std::string>> combinations(const std::vector<graph::SweepAxis>& axes) {
+  std::vector<std::vector<std::string>> runs{{}};
+  for (const auto& axis : axes) {
+    std::vector<std::vector<std::string>> longer;
+    for (const auto& run : runs)
+      for (const auto& value : axis.values) {
+        longer.push_back(run);
+        longer.back().push_back(value);
+      }
+    runs = std::move(longer);
+  }
+  return runs;
+}
+
+fs::path record_file(const fs::path& folder, const std::string& block, const std::string& port) {
+  return folder / fmt::format("{}.{}.record", block, port);
+}
+
+void write_record(const fs::path& file, const SharedRecord& record) {
+  fs::create_directories(file.parent_path());
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(record.bytes()), static_cast<std::streamsize>(record.size()));
+  stream.close();
+  if (!stream) throw std::runtime_error("can't write '" + file.string() + "'");
+}
+
+SharedRecord read_record(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return {};
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  return SharedRecord::copy(bytes.data(), bytes.size());
+}
+
+template <class Visit>
+void for_each_message_output(const graph::Phase& phase, Visit visit) {
+  for (const auto& block : phase.blocks)
+    for (const auto& port : block.type->ports)
+      if (port.kind == BF_MESSAGE && port.direction == BF_OUT) visit(block.name, port.name);
+}
+
+std::vector<std::string> worker_arguments(const graph::Phase& phase, const record::RunDirectory& directory, const fs::path& folder,
+                                          const std::vector<std::string>& values, const RunOptions& options) {
+  std::vector<std::string> arguments{options.command.string(),    "phase-worker", "--graph", (directory.path() / "graph.yaml").string(),
+                                     "--phase",                   phase.name,     "--out",   folder.string(),
+                                     "--references",              (directory.path() / "sweep" / phase.name / "references").string(),
+                                     "--vector-level",            std::to_string(options.vector_level)};
+  for (std::size_t a = 0; a < values.size(); ++a) {
+    const std::string& path = phase.sweep[a].path;
+    if (path == "seed") {
+      arguments.insert(arguments.end(), {"--seed", values[a]});
+    } else {
+      const std::string prefix = phase.name.empty() ? "" : phase.name + ".";
+      arguments.insert(arguments.end(), {"--set", prefix + path + "=" + values[a]});
+    }
+  }
+  return arguments;
+}
+
+RunResult failed(const graph::Phase& phase, std::string reason) {
+  return {RunResult::Status::failed, phase.name, "", std::move(reason), {}, false};
+}
+
+}  // namespace
+
+RunResult run_sweep(const graph::Graph&, const graph::Phase& phase, record::RunDirectory& directory, const RunOptions& options) {
+  const auto values = combinations(phase.sweep);
+  const fs::path folder = directory.path() / "sweep" / phase.name;
+  try {
+    fs::create_directories(folder);
+    for (const auto& r : phase.references)
+      write_record(record_file(folder / "references" / r.phase, r.block, r.port), directory.last_record(r.phase, r.block, r.port));
+  } catch (const std::exception& error) {
+    return failed(phase, error.what());
+  }
+
+  std::vector<std::vector<std::string>> commands;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    commands.push_back(worker_arguments(phase, directory, folder / std::to_string(i), values[i], options));
+  directory.event("sweep begins", {{"phase", phase.name}, {"runs", values.size()}});
+  const PoolResult pool = run_processes(commands, options.stop, [&](std::size_t done) {
+    if (options.progress)
+      options.progress(phase.name, {static_cast<double>(done), static_cast<double>(commands.size()), 0.0});
+  });
+  if (pool.interrupted) return {RunResult::Status::interrupted, phase.name, "", "interrupted", {}, false};
+  if (pool.failed)
+    return failed(phase, fmt::format("run {} of the sweep failed: {}", *pool.failed, pool.message));
+
+  for_each_message_output(phase, [&](const std::string& block, const std::string& port) {
+    std::vector<SharedRecord> records;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      SharedRecord record = read_record(record_file(folder / std::to_string(i) / "records", block, port));
+      if (!record) return;
+      records.push_back(std::move(record));
+    }
+    directory.set_result(phase.name, block, port, merge_records(records, phase.sweep, values));
+  });
+  directory.event("sweep ends", {{"phase", phase.name}});
+  return {};
+}
+
+RunResult run_worker(const WorkerTask& task, Registry& registry, const RunOptions& options) {
+  graph::LoadOptions load;
+  load.overrides = task.overrides;
+  load.seed = task.seed;
+  auto graph = graph::load(task.graph_file, load, registry);
+  if (!graph) return {RunResult::Status::rejected, task.phase, "", to_string(graph.error()), graph.error(), false};
+  std::erase_if(graph->phases, [&](const graph::Phase& phase) { return phase.name != task.phase; });
+  if (graph->phases.empty()) return {RunResult::Status::failed, task.phase, "", "there is no such phase", {}, false};
+  graph::Phase& phase = graph->phases.front();
+  phase.sweep.clear();
+  phase.when.reset();
+  phase.until.reset();
+  phase.repeat_max = 1;
+
+  Services services;
+  auto prepared = prepare_all(*graph, registry, services, options.plan);
+  if (!prepared) return {RunResult::Status::rejected, task.phase, "", to_string(prepared.error()), prepared.error(), false};
+  auto directory = record::RunDirectory::create({task.directory, phase.name, {{"seed", phase.run.seed}}}, *graph);
+  if (!directory) return failed(phase, directory.error());
+  services.attach(**directory);
+  for (const auto& r : phase.references)
+    if (auto record = read_record(record_file(task.references / r.phase, r.block, r.port)))
+      (*directory)->set_result(r.phase, r.block, r.port, record);
+
+  RunResult result = run(*graph, std::move(*prepared), registry, **directory, services, options);
+  if (result.status == RunResult::Status::complete) {
+    try {
+      for_each_message_output(phase, [&](const std::string& block, const std::string& port) {
+        if (auto record = (*directory)->last_record(phase.name, block, port))
+          write_record(record_file(task.directory / "records", block, port), record);
+      });
+    } catch (const std::exception& error) {
+      result = failed(phase, error.what());
+    }
+  }
+  const auto closed = (*directory)->close(result.status == RunResult::Status::complete ? "complete" : "failed", result.reason);
+  if (!closed && result.status == RunResult::Status::complete) return failed(phase, closed.error());
+  return result;
+}
+
+}  // namespace bodeflow::phases

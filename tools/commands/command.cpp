@@ -1,0 +1,69 @@
+#include "commands/command.hpp"
+
+#include <cstdlib>
+#include <random>
+
+namespace bodeflow::tools {
+namespace {
+
+std::filesystem::path cache_file() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache == '/')
+    return std::filesystem::path(cache) / "bodeflow" / "plugins.json";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
+    return std::filesystem::path(home) / ".cache" / "bodeflow" / "plugins.json";
+  return {};
+}
+
+}  // namespace
+
+Registry Session::open_registry() const {
+  Registry::Options options;
+  for (const auto& folder : plugin_path) options.path.emplace_back(folder);
+  for (auto& folder : default_plugin_path()) options.path.push_back(std::move(folder));
+  options.cache = cache_file();
+  options.probe_command = executable;
+  return Registry(std::move(options));
+}
+
+void GraphOptions::add_to(CLI::App& app) {
+  app.add_option("graph", file, "The graph: a YAML file")->required();
+  app.add_option("--set", sets, "PATH=VALUE: a variable, block.parameter, or a path in the file")->type_name("PATH=VALUE")->allow_extra_args(false);
+  app.add_option("--seed", seed, "Seed of all random numbers, or 'random'")->type_name("N|random");
+  app.add_option("--for", duration, "Duration of the run, such as '10 s'")->type_name("DURATION");
+}
+
+tl::expected<graph::Graph, int> GraphOptions::load(const Registry& registry) const {
+  graph::LoadOptions options;
+  for (const auto& set : sets) {
+    const auto equal = set.find('=');
+    if (equal == std::string::npos || equal == 0) {
+      say_error("--set '" + set + "': expected PATH=VALUE, such as gain.gain=2");
+      return tl::unexpected(static_cast<int>(kUsage));
+    }
+    options.overrides.emplace_back(set.substr(0, equal), set.substr(equal + 1));
+  }
+  if (!duration.empty()) options.overrides.emplace_back("run.duration", duration);
+  if (seed == "random") {
+    options.seed = std::random_device{}();
+  } else if (!seed.empty()) {
+    std::size_t used = 0;
+    try {
+      if (seed[0] == '-') throw std::invalid_argument(seed);
+      options.seed = std::stoull(seed, &used);
+    } catch (const std::exception&) {
+      used = 0;
+    }
+    if (used != seed.size()) {
+      say_error("--seed '" + seed + "': expected a whole number from 0, or 'random'");
+      return tl::unexpected(static_cast<int>(kUsage));
+    }
+  }
+  auto graph = graph::load(file, options, registry);
+  if (!graph) {
+    say_problems(graph.error());
+    return tl::unexpected(static_cast<int>(kRejected));
+  }
+  return std::move(*graph);
+}
+
+}  // namespace bodeflow::tools

@@ -1,0 +1,62 @@
+#include "commands/command.hpp"
+#include "commands/interrupt.hpp"
+#include "phases/sweep.hpp"
+#include "plugins/probe.hpp"
+
+namespace bodeflow::tools {
+namespace {
+
+void add_probe(CLI::App& app, Session& session) {
+  auto* command = app.add_subcommand("probe-plugin", "Print the descriptors of a plugin file")->group("");
+  auto file = std::make_shared<std::string>();
+  command->add_option("file", *file)->required();
+  command->callback([&session, file] { session.action = [file] { return probe_main(file->c_str()); }; });
+}
+
+struct WorkerCommand {
+  phases::WorkerTask task;
+  phases::RunOptions run;
+  std::vector<std::string> sets;
+  std::uint64_t seed = 0;
+};
+
+int work(const Session& session, WorkerCommand& command, bool seeded) {
+  for (const auto& set : command.sets) {
+    const auto equal = set.find('=');
+    if (equal == std::string::npos) return kUsage;
+    command.task.overrides.emplace_back(set.substr(0, equal), set.substr(equal + 1));
+  }
+  if (seeded) command.task.seed = command.seed;
+  command.run.stop = &stop_on_interrupt();
+  command.run.plan.threads = 1;
+  Registry registry = session.open_registry();
+  const phases::RunResult result = phases::run_worker(command.task, registry, command.run);
+  if (result.status == phases::RunResult::Status::complete) return kDone;
+  say(result.block.empty() ? result.reason : "block '" + result.block + "': " + result.reason);
+  if (result.hung) std::_Exit(kRunFailed);
+  return result.status == phases::RunResult::Status::interrupted ? kInterrupted : kRunFailed;
+}
+
+void add_worker(CLI::App& app, Session& session) {
+  auto* command = app.add_subcommand("phase-worker", "Run one phase of a sweep")->group("");
+  auto options = std::make_shared<WorkerCommand>();
+  command->add_option("--graph", options->task.graph_file)->required();
+  command->add_option("--phase", options->task.phase)->required();
+  command->add_option("--out", options->task.directory)->required();
+  command->add_option("--references", options->task.references)->required();
+  command->add_option("--vector-level", options->run.vector_level);
+  command->add_option("--set", options->sets)->allow_extra_args(false);
+  auto* seed = command->add_option("--seed", options->seed);
+  command->callback([&session, options, seed] {
+    session.action = [&session, options, seeded = seed->count() > 0] { return work(session, *options, seeded); };
+  });
+}
+
+}  // namespace
+
+void add_internal(CLI::App& app, Session& session) {
+  add_probe(app, session);
+  add_worker(app, session);
+}
+
+}  // namespace bodeflow::tools

@@ -1,0 +1,83 @@
+#include "commands/command.hpp"
+#include "commands/run_graph.hpp"
+#include "commands/vector_level.hpp"
+#include "console/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+namespace bodeflow::tools {
+namespace {
+
+struct RunCommand {
+  GraphOptions graph;
+  std::string out;
+  int threads = 0;
+  std::int64_t chunk = 0;
+  std::string isa;
+  bool dry_run = false;
+  bool json = false;
+};
+
+int dry_run(const graph::Graph& graph, Registry& registry, const phases::PlanSettings& settings) {
+  const auto prepared = phases::prepare_all(graph, registry, phases::Services(), settings);
+  if (!prepared) {
+    say_problems(prepared.error());
+    return kRejected;
+  }
+  for (std::size_t i = 0; i < graph.phases.size(); ++i) {
+    if (!graph.phases[i].name.empty()) fmt::print("{}\n", bold("phase " + graph.phases[i].name));
+    fmt::print("{}", plan::to_text(graph.phases[i], (*prepared)[i].facts, (*prepared)[i].plan));
+  }
+  fmt::print("Nothing was run.\n");
+  return kDone;
+}
+
+int run(const Session& session, const RunCommand& command) {
+  RunGraph options;
+  options.vector_level = command.isa.empty() ? processor_vector_level() : vector_level_of(command.isa);
+  if (options.vector_level > processor_vector_level()) {
+    say_error(fmt::format("--isa {}: this processor has {}", command.isa, vector_level_name(processor_vector_level())));
+    return kUsage;
+  }
+  Registry registry = session.open_registry();
+  const auto graph = command.graph.load(registry);
+  if (!graph) return graph.error();
+  if (command.threads > 0) options.plan.threads = command.threads;
+  if (command.chunk > 0) options.plan.chunk = command.chunk;
+  if (command.dry_run) return dry_run(*graph, registry, options.plan);
+
+  options.out = command.out;
+  options.executable = session.executable;
+  options.command = {{"threads", command.threads}, {"chunk", command.chunk}};
+  const RanGraph ran = run_graph(*graph, registry, options);
+  if (ran.directory.empty()) return ran.exit_code;
+  if (command.json) {
+    nlohmann::ordered_json printed = ran.result;
+    printed["directory"] = ran.directory.string();
+    fmt::print("{}\n", printed.dump(2));
+  } else if (ran.exit_code == kDone) {
+    if (!graph->title.empty()) fmt::print("{}\n", bold(graph->title));
+    print_summary(ran.result);
+    fmt::print("Run directory: {}\n", ran.directory.string());
+  }
+  return ran.exit_code;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Session& session) {
+  auto* command = app.add_subcommand("run", "Run a graph and keep what it gives in a run directory");
+  auto options = std::make_shared<RunCommand>();
+  options->graph.add_to(*command);
+  command->add_option("--out", options->out, "Run directory (runs/<time>-<graph> otherwise)")->type_name("DIR");
+  command->add_option("--threads", options->threads, "Most threads")->check(CLI::Range(1, 256));
+  command->add_option("--chunk", options->chunk, "Samples of the fastest stream in one call, at most")->check(CLI::Range(1, 1 << 20));
+  command->add_option("--isa", options->isa, "Widest vector unit of kernels (this processor's otherwise)")->check(CLI::IsMember(vector_level_names()));
+  command->add_flag("--dry-run", options->dry_run, "Check and plan, show what would run, run nothing");
+  command->add_flag("--json", options->json, "Print the results as JSON");
+  command->callback([&session, options] { session.action = [&session, options] { return run(session, *options); }; });
+}
+
+}  // namespace bodeflow::tools

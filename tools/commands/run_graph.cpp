@@ -1,0 +1,115 @@
+#include "commands/run_graph.hpp"
+
+#include "commands/interrupt.hpp"
+#include "commands/vector_level.hpp"
+#include "console/console.hpp"
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <set>
+
+namespace bodeflow::tools {
+namespace {
+
+nlohmann::json manifest_of(const graph::Graph& graph, const Registry& registry, const RunGraph& options) {
+  std::set<std::string> seen;
+  nlohmann::json plugins = nlohmann::json::array();
+  for (const auto& phase : graph.phases)
+    for (const auto& block : phase.blocks) {
+      const PluginDescription* plugin = registry.plugin_of(block.type->id);
+      if (plugin != nullptr && seen.insert(plugin->name).second)
+        plugins.push_back({{"name", plugin->name}, {"version", plugin->version}, {"file", plugin->file}, {"sha256", plugin->sha256}, {"build", plugin->build}});
+    }
+  utsname system{};
+  uname(&system);
+  return {{"bodeflow", BODEFLOW_VERSION},
+          {"abi", fmt::format("{}.{}", BF_ABI_MAJOR, BF_ABI_MINOR)},
+          {"graph", graph.file},
+          {"title", graph.title},
+          {"command", options.command},
+          {"vector_level", vector_level_name(options.vector_level)},
+          {"host", system.nodename},
+          {"system", fmt::format("{} {} {}", system.sysname, system.release, system.machine)},
+          {"plugins", plugins}};
+}
+
+const char* status_word(phases::RunResult::Status status) {
+  switch (status) {
+    case phases::RunResult::Status::complete: return "complete";
+    case phases::RunResult::Status::interrupted: return "partial";
+    default: return "failed";
+  }
+}
+
+int exit_code_of(phases::RunResult::Status status) {
+  switch (status) {
+    case phases::RunResult::Status::complete: return kDone;
+    case phases::RunResult::Status::interrupted: return kInterrupted;
+    case phases::RunResult::Status::rejected: return kRejected;
+    default: return kRunFailed;
+  }
+}
+
+void say_result(const phases::RunResult& result, const std::filesystem::path& directory) {
+  if (result.status == phases::RunResult::Status::complete) return;
+  const std::string phase = result.phase.empty() ? "" : fmt::format("phase '{}': ", result.phase);
+  if (result.status == phases::RunResult::Status::rejected)
+    say_problems(result.problems);
+  else if (result.status == phases::RunResult::Status::interrupted)
+    say_warning(phase + "interrupted; what was recorded is kept");
+  else
+    say_error(phase + (result.block.empty() ? "" : fmt::format("block '{}': ", result.block)) + result.reason);
+  say(fmt::format("partial run: {}", directory.string()));
+}
+
+}  // namespace
+
+RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph& options) {
+  const std::atomic<bool>& stop = stop_on_interrupt();
+  ProgressLine progress;
+  phases::Services services([&progress](const std::string& block, int level, const std::string& text) {
+    if (level < BF_LOG_INFO) return;
+    progress.clear();
+    if (level >= BF_LOG_WARNING)
+      say_warning(block + ": " + text);
+    else
+      say(block + ": " + text);
+  });
+  auto prepared = phases::prepare_all(graph, registry, services, options.plan);
+  if (!prepared) {
+    say_problems(prepared.error());
+    return {kRejected, {}, {}};
+  }
+  for (const auto& phase : *prepared)
+    for (const auto& warning : phase.facts.warnings) say_warning(warning);
+
+  auto directory = record::RunDirectory::create(
+      {options.out, std::filesystem::path(graph.file).stem().string(), manifest_of(graph, registry, options)}, graph);
+  if (!directory) {
+    say_error(directory.error());
+    return {kRunFailed, {}, {}};
+  }
+  services.attach(**directory);
+
+  phases::RunOptions run;
+  run.plan = options.plan;
+  run.vector_level = options.vector_level;
+  run.stop = &stop;
+  run.command = options.executable;
+  run.progress = [&progress](const std::string& phase, const execute::Progress& now) { progress.show(phase, now); };
+  const phases::RunResult result = phases::run(graph, std::move(*prepared), registry, **directory, services, run);
+  progress.clear();
+
+  const auto closed = (*directory)->close(status_word(result.status), result.reason);
+  RanGraph ran{exit_code_of(result.status), (*directory)->path(), (*directory)->result()};
+  say_result(result, ran.directory);
+  if (!closed) {
+    say_error(closed.error());
+    if (ran.exit_code == kDone) ran.exit_code = kRunFailed;
+  }
+  if (result.hung) std::_Exit(ran.exit_code);
+  return ran;
+}
+
+}  // namespace bodeflow::tools

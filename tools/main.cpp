@@ -1,0 +1,43 @@
+#include "commands/command.hpp"
+
+#include <exception>
+
+int main(int argc, char** argv) {
+  using namespace bodeflow::tools;
+  Session session;
+  std::error_code error;
+  session.executable = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) session.executable = argv[0];
+
+  CLI::App app("bodeflow: identify and control real plants in the frequency domain", "bodeflow");
+  app.set_version_flag("--version", "bodeflow " BODEFLOW_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.add_option("--path", session.plugin_path, "A folder with plugins, before the usual ones")->type_name("DIR")->allow_extra_args(false);
+  add_run(app, session);
+  add_check(app, session);
+  add_plan(app, session);
+  add_graph(app, session);
+  add_expand(app, session);
+  add_plugins(app, session);
+  add_describe(app, session);
+  add_schema(app, session);
+  add_new(app, session);
+  add_test_plugin(app, session);
+  add_rerun(app, session);
+  add_doctor(app, session);
+  add_completion(app, session);
+  add_internal(app, session);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& parse_error) {
+    return app.exit(parse_error) == 0 ? kDone : kUsage;
+  }
+  try {
+    return session.action();
+  } catch (const std::exception& exception) {
+    say_error(exception.what());
+    return kRunFailed;
+  }
+}

@@ -25,7 +25,7 @@ tl::expected<bool, Problem> holds(const graph::Condition& condition, const Share
   const auto problem = [&](const std::string& text) { return tl::unexpected(Problem{condition.place, text}); };
   const std::string name = fmt::format("'${}.{}.{}.{}'", condition.phase, condition.block, condition.port, condition.attribute);
   if (!record) return problem(fmt::format("condition {}: block '{}' sent no record", name, condition.block));
-  const auto checked = RecordView::check(record.bytes(), record.size());
+  const auto checked = RecordView::check({record.bytes(), record.size()});
   if (!checked) return problem(fmt::format("condition {}: {}", name, checked.error().text));
   const RecordView view = *checked;
 

@@ -11,7 +11,7 @@ namespace {
 std::vector<RecordView> views_of(const std::vector<SharedRecord>& records) {
   std::vector<RecordView> views;
   for (const auto& record : records)
-    if (auto view = RecordView::check(record.bytes(), record.size())) views.push_back(*view);
+    if (auto view = RecordView::check({record.bytes(), record.size()})) views.push_back(*view);
   return views;
 }
 
@@ -37,7 +37,7 @@ bool in_all(const std::vector<RecordView>& views, const ArrayView& first) {
 }
 
 void stack_array(RecordBuilder& merged, const std::vector<RecordView>& views, const ArrayView& first) {
-  if (first.shape.size() >= kMaximumRank || !in_all(views, first)) return;
+  if (first.shape.size() >= kRecordMaxRank || !in_all(views, first)) return;
   switch (first.element) {
     case BF_F64: return stack<double>(merged, views, first);
     case BF_C64: return stack<std::complex<double>>(merged, views, first);
@@ -77,9 +77,9 @@ SharedRecord merge_records(const std::vector<SharedRecord>& records, const std::
   for (const auto& attribute : views[0].attributes()) {
     std::vector<double> numbers;
     for (const auto& view : views)
-      if (const auto number = view.number(attribute.name)) numbers.push_back(*number);
-    if (numbers.size() != views.size() || views[0].array(attribute.name)) continue;
-    const auto out = merged.array<double>(std::string(attribute.name), "", {numbers.size()});
+      if (const auto number = view.number(attribute.name())) numbers.push_back(*number);
+    if (numbers.size() != views.size() || views[0].array(attribute.name())) continue;
+    const auto out = merged.array<double>(std::string(attribute.name()), "", {numbers.size()});
     std::copy(numbers.begin(), numbers.end(), out.begin());
   }
   for (const auto& array : views[0].arrays()) stack_array(merged, views, array);

@@ -1,0 +1,72 @@
+#include "hand.hpp"
+
+#include <array>
+#include <chrono>
+#include <cstring>
+
+namespace bench {
+namespace {
+
+constexpr std::size_t kChunk = 1024;
+
+void keep(const void* data) { asm volatile("" : : "g"(data) : "memory"); }
+
+double now_ns() {
+  return static_cast<double>(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
+}
+
+template <int Blocks>
+void multiply(std::size_t samples) {
+  alignas(64) static std::array<double, kChunk> x, y;
+  for (std::size_t n = 0; n < samples; n += kChunk) {
+    std::memset(x.data(), 0, sizeof x);
+    keep(x.data());
+    for (std::size_t i = 0; i < kChunk; ++i) {
+      double value = x[i];
+      for (int b = 0; b < Blocks; ++b) value *= 1.0 + 1e-3 * (b + 1);
+      y[i] = value;
+    }
+    keep(y.data());
+  }
+}
+
+void copy_one(const double* x, double* y) { std::memcpy(y, x, sizeof *x); }
+
+}  // namespace
+
+void hand_multiply(int blocks, std::size_t samples) {
+  switch (blocks) {
+    case 1: return multiply<1>(samples);
+    case 4: return multiply<4>(samples);
+    default: return multiply<16>(samples);
+  }
+}
+
+void hand_feedback(std::size_t samples) {
+  alignas(64) static std::array<double, kChunk> x, y;
+  double last = 0.0;
+  for (std::size_t n = 0; n < samples; n += kChunk) {
+    std::memset(x.data(), 0, sizeof x);
+    keep(x.data());
+    for (std::size_t i = 0; i < kChunk; ++i) y[i] = last = 0.5 * (x[i] + 0.8 * last);
+    keep(y.data());
+  }
+}
+
+std::vector<double> hand_latency(std::size_t samples) {
+  using Block = void (*)(const double*, double*);
+  std::array<Block, 8> chain{};
+  chain.fill(copy_one);
+  keep(chain.data());
+  std::array<double, 9> signal{};
+  std::vector<double> ages;
+  ages.reserve(samples);
+  for (std::size_t n = 0; n < samples; ++n) {
+    signal[0] = now_ns();
+    for (std::size_t b = 0; b < chain.size(); ++b) chain[b](&signal[b], &signal[b + 1]);
+    ages.push_back(now_ns() - signal[8]);
+  }
+  return ages;
+}
+
+}  // namespace bench

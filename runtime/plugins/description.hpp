@@ -28,6 +28,8 @@ struct ParameterValue {
 class ParameterView {
  public:
   explicit ParameterView(const ParameterValue& value);
+  ParameterView(ParameterView&&) = default;
+  ParameterView& operator=(ParameterView&&) = default;
   const bf_parameter_value& c() const { return c_; }
 
  private:
@@ -94,11 +96,11 @@ struct BlockDescription {
 
 /// A plugin as the probe found it.
 struct PluginDescription {
-  std::string file;     ///< absolute path
+  std::string file;  ///< absolute path, links resolved
   std::string name;
   std::string version;
   std::string build;
-  std::string sha256;   ///< of the file
+  std::string sha256;  ///< of the file; empty for a file that is refused before it was hashed
   std::vector<BlockDescription> blocks;
   std::string refused;  ///< why it can't be used; empty: it can
 };

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "plugins/registry.hpp"
-
 #include <bodeflow/rate.hpp>
-
 #include <functional>
 #include <optional>
+
+#include "plugins/registry.hpp"
 
 namespace bodeflow {
 

@@ -1,28 +1,27 @@
 #pragma once
 
-#include "plugins/description.hpp"
-
-#include <tl/expected.hpp>
-
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <tl/expected.hpp>
 #include <vector>
 
-namespace bodeflow {
+#include "plugins/description.hpp"
 
-/// The services of one block instance: error text, log, files. Owned by Instance; see instance.hpp.
-struct InstanceServices;
+namespace bodeflow {
 
 /// The plugins found in the search path, probed in child processes (cached), loaded when first used.
 class Registry {
  public:
   struct Options {
-    std::vector<std::filesystem::path> path;  ///< folders, the earlier wins over none: a duplicate id is refused
-    std::filesystem::path cache;              ///< file of the probe cache; empty: none
-    std::filesystem::path probe_command;      ///< our own executable, called as `probe_command probe-plugin FILE`
+    std::vector<std::filesystem::path>
+        path;                             ///< folders with `*.so`, or plugin files; of two with the same id the later is refused
+    std::filesystem::path cache;          ///< file of the probe cache; empty: none
+    std::filesystem::path probe_command;  ///< our own executable, called as `probe_command probe-plugin FILE`
+    double probe_timeout_s = 10.0;        ///< a plugin that takes longer to describe itself is refused
   };
 
+  /// Finds and probes; never throws because of a plugin, an absent folder or the cache.
   explicit Registry(Options options);
   ~Registry();
   Registry(Registry&&) noexcept;
@@ -39,11 +38,15 @@ class Registry {
   const PluginDescription* plugin_of(const std::string& id) const;
 
   /// Makes a block (loads its plugin if needed). The library outlives the block. Error: why not, with the plugin's name.
+  /// [control] `host` outlives the block.
   tl::expected<bf_block, std::string> create(const std::string& id, const bf_host& host);
+
+  /// Keeps the libraries and descriptions in memory, also beyond the registry's own life.
+  std::shared_ptr<const void> keep_alive() const;
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;  // shared with the instances, see keep_alive
 };
 
 /// Where plugins are looked for: BODEFLOW_PLUGIN_PATH (colon separated), beside the executable (../plugins,

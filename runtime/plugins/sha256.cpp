@@ -45,6 +45,12 @@ std::string Sha256::hex() const {
   return text;
 }
 
+std::string sha256_hex(std::span<const std::byte> bytes) {
+  Sha256 hash;
+  hash.update(bytes.data(), bytes.size());
+  return hash.hex();
+}
+
 tl::expected<std::string, std::string> sha256_of_file(const std::filesystem::path& path) {
   const auto failure = [&](int error) { return tl::unexpected("can't read '" + path.string() + "': " + std::strerror(error)); };
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <tl/expected.hpp>
 
@@ -24,6 +25,9 @@ class Sha256 {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// The hash of the bytes.
+std::string sha256_hex(std::span<const std::byte> bytes);
 
 /// The hash of a file's bytes. Error: why it can't be read, with its path.
 tl::expected<std::string, std::string> sha256_of_file(const std::filesystem::path& path);

@@ -1,14 +1,15 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
 #include "graph/graph.hpp"
 #include "plugins/instance.hpp"
-
-#include <nlohmann/json_fwd.hpp>
-#include <tl/expected.hpp>
-
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace bodeflow::plan {
 
@@ -19,12 +20,12 @@ struct Facts {
     std::vector<StreamFacts> outputs;
     std::vector<Flow> input_flows;
     std::vector<Flow> output_flows;
-    Rate firing_rate;                 ///< firings per second; zero for a block without streams
-    std::int64_t repetitions = 0;     ///< firings per period of the whole phase; zero for a block without streams
-    std::int64_t firings = -1;        ///< until the block's own or the run's end; -1: no end known
+    Rate firing_rate;              ///< firings per second; zero for a block without streams
+    std::int64_t repetitions = 0;  ///< firings per period of the whole phase; zero for a block without streams
+    std::int64_t firings = -1;     ///< until the block's own or the run's end; -1: no end known
   };
   std::vector<Block> blocks;
-  Rate period;                        ///< seconds of one repetition of the phase; zero without streams
+  Rate period;  ///< seconds of one repetition of the phase; zero without streams
   std::vector<std::string> warnings;
 };
 
@@ -40,24 +41,28 @@ tl::expected<Facts, Problems> establish_facts(const graph::Phase& phase, const s
 struct Buffer {
   std::uint32_t element = BF_F64;
   std::uint32_t channels = 1;
-  std::uint64_t history = 0;     ///< samples kept from chunk to chunk before the new ones (largest delay of its readers)
-  std::uint64_t capacity = 0;    ///< new samples of one chunk, at most
-  std::uint32_t slots = 1;       ///< more than one: a ring between two threads, a slot a chunk
-  std::uint64_t arena_offset = 0;///< bytes from the start of its partition's arena; buffers that do not live at the same time overlap
-  std::uint64_t bytes = 0;       ///< of all slots, each channel padded to 64 bytes
-  int partition = 0;             ///< whose arena it lies in: the writer's
+  std::uint64_t history = 0;   ///< samples kept from chunk to chunk before the new ones (largest delay of its readers)
+  std::uint64_t capacity = 0;  ///< new samples of one chunk, at most
+  std::uint32_t slots = 1;     ///< more than one: a ring between two threads, a slot a chunk
+  std::uint64_t arena_offset =
+      0;                    ///< bytes from the start of its partition's arena; buffers that do not live at the same time overlap
+  std::uint64_t bytes = 0;  ///< of all slots, each channel padded to 64 bytes
+  int partition = 0;        ///< whose arena it lies in: the writer's
 };
 
 /// Which buffer a stream port uses.
 struct Use {
-  int buffer = -1;               ///< -1: unconnected
-  std::uint64_t delay = 0;       ///< samples that the reader is behind the writer
+  int buffer = -1;          ///< -1: unconnected
+  std::uint64_t delay = 0;  ///< samples that the reader is behind the writer
 };
 
-/// `count` firings of a block, within a schedule.
+/// `count` firings of a block at once, within a schedule. A block without streams has count 0: its turn to take the records
+/// that have come. With `to_buffer` >= 0 no call at all, but a copy: the samples that the `count` firings of `block` just
+/// before wrote to `from_buffer` are appended to `to_buffer` (an edge inside a loop with initial values of its own).
 struct Firing {
   int block = 0;
   std::int64_t count = 1;
+  int from_buffer = -1, to_buffer = -1;
 };
 
 /// One entry of the flat list of a thread.
@@ -68,45 +73,51 @@ struct Step {
     copy      ///< from one buffer to another (a delayed edge with initial values of its own)
   };
   Kind kind = Kind::call;
-  int block = 0;                       ///< call
-  std::vector<Firing> schedule;        ///< cluster: one pass
-  std::int64_t repetitions = 1;        ///< cluster: repetitions of the phase's period in one pass
-  int from_buffer = -1, to_buffer = -1;///< copy
+  int block = 0;                 ///< call
+  std::vector<Firing> schedule;  ///< cluster: one pass
+  /// Cluster: one pass of the schedule is `repetitions` periods of the loop, of which `parts` make one period of the phase. A
+  /// chunk of k periods of the phase takes k * parts / repetitions passes; in the last one, if it is not whole, and at the end of
+  /// a run, a block fires only as often as is left for it in the chunk.
+  std::int64_t repetitions = 1;
+  std::int64_t parts = 1;
+  int from_buffer = -1, to_buffer = -1;  ///< copy
 };
 
 /// What one thread does in each chunk, in order.
 struct Partition {
   std::vector<Step> steps;
   std::uint64_t arena_bytes = 0;
-  double cost_ns = 0.0;                ///< declared, for one period of the phase
+  double cost_ns = 0.0;  ///< declared, for one period of the phase
 };
 
 struct Plan {
-  std::int64_t repetitions = 1;        ///< periods of the phase in one chunk
-  std::vector<Partition> partitions;   ///< at least one
+  std::int64_t repetitions = 1;       ///< periods of the phase in one chunk
+  std::vector<Partition> partitions;  ///< at least one
   std::vector<Buffer> buffers;
   /// Per block: the buffer of each stream input and output. A delayed input reads at history - delay.
   std::vector<std::vector<Use>> inputs, outputs;
-  std::vector<int> partition_of;       ///< per block
+  std::vector<int> partition_of;  ///< per block
   /// Per stream buffer that crosses threads: the partitions that read it (beside the writer's own).
   std::vector<std::vector<int>> readers;
   /// Blocks in a topological order of stream and message edges (delayed edges left out): the order of finish.
   std::vector<int> order;
   /// Initial values that stand in a buffer's history at the start: channels x history, channel after channel (c64: pairs).
   std::vector<std::vector<double>> initial;
-  std::uint64_t bytes = 0;             ///< of all buffers and rings
+  std::uint64_t bytes = 0;  ///< of all buffers and rings
   double chunk_s = 0.0;
-  double latency_s = 0.0;              ///< from a sample's arrival to the last block's output, at most
+  double latency_s = 0.0;  ///< until a sample's chunk is full, and a chunk for each further thread; without computing time
+  std::vector<std::string> notes;  ///< decisions that a user may wonder about (fewer threads than asked for)
 };
 
 struct PlanOptions {
   std::int64_t chunk = 1024;
   std::optional<double> latency_s;
   int threads = 1;
-  std::vector<graph::End> kept;        ///< stream outputs that are recorded: their buffers live to the end of the chunk
+  std::vector<graph::End> kept;  ///< stream outputs that are recorded: their buffers live to the end of the chunk
 };
 
-/// The plan of a phase; a value: the same input gives the same plan. Errors name deadlocked loops with their cycle and missing samples.
+/// The plan of a phase; a value: the same input gives the same plan. Errors name deadlocked loops with their cycle and missing
+/// samples.
 tl::expected<Plan, Problems> make_plan(const graph::Phase& phase, const Facts& facts, const PlanOptions& options);
 
 /// For people, and for scripts.

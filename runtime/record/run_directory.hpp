@@ -1,10 +1,9 @@
 #pragma once
 
-#include "execute/execute.hpp"
-
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
+#include "execute/execute.hpp"
 
 namespace bodeflow::record {
 
@@ -13,9 +12,9 @@ namespace bodeflow::record {
 class RunDirectory {
  public:
   struct Options {
-    std::filesystem::path directory;   ///< as given by --out; empty: runs/<time>-<graph> below the working directory
-    std::string graph_name;            ///< file name without extension
-    nlohmann::json manifest;           ///< what the caller knows: versions, plugins, seed, command line options ...
+    std::filesystem::path directory;  ///< as given by --out; empty: runs/<time>-<graph> below the working directory
+    std::string graph_name;           ///< file name without extension
+    nlohmann::json manifest;          ///< what the caller knows: versions, plugins, seed, command line options ...
   };
 
   /// Creates the folder (it must not hold a run already) and writes graph.yaml and manifest.json.
@@ -34,8 +33,8 @@ class RunDirectory {
   tl::expected<std::string, std::string> output_path(const std::string& block, const std::string& name);
 
   /// Opens the recording of a phase's run (`repeat` counts from 0) in data.h5; the sink lives until the directory is closed.
-  tl::expected<execute::Sink*, std::string> begin_phase(const graph::Phase& phase, const plan::Facts& facts, const nlohmann::json& plan,
-                                                        int repeat);
+  tl::expected<execute::Sink*, std::string> begin_phase(const graph::Phase& phase, const plan::Facts& facts,
+                                                        const nlohmann::json& plan, int repeat);
   /// Ends it: hashes of streams and records go into the manifest, last records of message outputs into result.json.
   tl::expected<void, std::string> end_phase(const execute::Outcome& outcome);
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "execute/execute.hpp"
+
+namespace bodeflow::record {
+
+/// manifest.json: what is needed to read a run and to repeat it. It exists from the start, with the status "running".
+class Manifest {
+ public:
+  /// `given`: the caller's own fields; they stand first and can't replace ours.
+  Manifest(std::filesystem::path file, const graph::Graph& graph, const std::string& graph_name, const nlohmann::json& given);
+
+  /// Claims the file: it must not exist. Error: why not, with its path.
+  tl::expected<void, std::string> create();
+  tl::expected<void, std::string> write(bool durable = false);
+
+  /// The size and SHA-256 of a file that a block reads, or why it can't be read; false: it is known already.
+  bool add_input(const std::string& block, const std::string& path);
+  void add_phase(const graph::Phase& phase, int repeat, const execute::Outcome& outcome);
+  void add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes);
+  void end(const std::string& status, const std::string& reason);
+
+ private:
+  std::filesystem::path file_;
+  nlohmann::ordered_json json_;
+};
+
+}  // namespace bodeflow::record

@@ -1,15 +1,14 @@
 #pragma once
 
-#include "graph/problem.hpp"
-#include "plugins/description.hpp"
-
 #include <bodeflow/rate.hpp>
-
 #include <cstdint>
 #include <optional>
-#include <variant>
 #include <string>
+#include <variant>
 #include <vector>
+
+#include "graph/problem.hpp"
+#include "plugins/description.hpp"
 
 namespace bodeflow::graph {
 
@@ -17,10 +16,10 @@ namespace bodeflow::graph {
 struct Block {
   std::string name;
   const BlockDescription* type = nullptr;
-  std::vector<ParameterValue> parameters;    ///< one per described parameter, defaults filled in
-  std::vector<Place> parameter_places;       ///< where each was written; the block's place for defaults
+  std::vector<ParameterValue> parameters;  ///< one per described parameter, defaults filled in
+  std::vector<Place> parameter_places;     ///< where each was written; the block's place for defaults
   Place place;
-  std::string host;                          ///< "" : where the graph was started
+  std::string host;  ///< "" : where the graph was started
 };
 
 /// One end of a connection: block and port, the port by kind-and-direction index.
@@ -42,8 +41,8 @@ struct StreamEdge {
 
 /// How long a record waits: exactly one of the two is non-zero, or none.
 struct Latency {
-  Rate seconds{0, 1};          ///< a fraction, in seconds
-  std::int64_t samples = 0;    ///< of the consumer
+  Rate seconds{0, 1};        ///< a fraction, in seconds
+  std::int64_t samples = 0;  ///< of the consumer
 };
 
 struct MessageEdge {
@@ -83,10 +82,10 @@ struct RunSettings {
   Clock clock = Clock::simulated;
   std::optional<double> duration_s;
   std::uint64_t seed = 1;
-  std::int64_t chunk = 1024;            ///< samples of the fastest stream in one call, at most
-  std::optional<double> latency_s;      ///< budget: the chunk is not longer than this
+  std::int64_t chunk = 1024;        ///< samples of the fastest stream in one call, at most
+  std::optional<double> latency_s;  ///< budget: the chunk is not longer than this
   int threads = 1;
-  double watchdog_s = 10.0;             ///< a graph without progress for this long is ended and named
+  double watchdog_s = 10.0;  ///< a graph without progress for this long is ended and named
 };
 
 /// `$phase.block.port.attribute OP value`, or the attribute alone (true, non-zero).
@@ -111,7 +110,7 @@ struct Phase {
   std::vector<StreamEdge> streams;
   std::vector<MessageEdge> messages;
   std::vector<Reference> references;
-  std::vector<ScheduledChange> schedule;   ///< ordered by time, then as written
+  std::vector<ScheduledChange> schedule;  ///< ordered by time, then as written
   std::vector<RecordedPort> recorded;
   RunSettings run;
   std::optional<Condition> when;
@@ -126,7 +125,7 @@ struct Graph {
   std::string file;
   std::string title;
   std::vector<Phase> phases;
-  std::string expanded;             ///< the graph as one self-contained YAML text, overrides applied
+  std::string expanded;  ///< the graph as one self-contained YAML text, overrides applied
 };
 
 }  // namespace bodeflow::graph

@@ -1,19 +1,18 @@
 #pragma once
 
-#include "graph/graph.hpp"
-#include "plugins/registry.hpp"
-
-#include <tl/expected.hpp>
-
 #include <string>
+#include <tl/expected.hpp>
 #include <utility>
 #include <vector>
+
+#include "graph/graph.hpp"
+#include "plugins/registry.hpp"
 
 namespace bodeflow::graph {
 
 struct LoadOptions {
   std::vector<std::pair<std::string, std::string>> overrides;  ///< --set PATH=VALUE, in order
-  std::optional<std::uint64_t> seed;                            ///< --seed
+  std::optional<std::uint64_t> seed;                           ///< --seed
 };
 
 /// The checked graph of a YAML file, or every problem in it at once. Reads files, runs no code of a plugin.

@@ -1,0 +1,61 @@
+#include "graph/run_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "graph/keys.hpp"
+#include "graph/scalar.hpp"
+
+namespace bodeflow::graph {
+namespace {
+
+constexpr std::int64_t kLongestChunk = 1 << 20;
+constexpr std::int64_t kMostThreads = 256;
+
+std::optional<double> read_time(const Node& node, const std::string& where, Report& report) {
+  const auto seconds = read_number(node, where, "s", report);
+  if (seconds && *seconds <= 0.0) {
+    report.add(node.spot, fmt::format("{}: found {}, allowed: a time above 0 s", where, quote(node.text)));
+    return {};
+  }
+  return seconds;
+}
+
+Clock clock_named(const std::string& name) {
+  return name == "simulated" ? Clock::simulated : name == "realtime" ? Clock::realtime : Clock::hardware;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> read_seed(const Node& node, const std::string& where, Report& report) {
+  const auto text = read_text(node, where, report);
+  if (!text) return {};
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), seed);
+  const bool octal = text->size() > 1 && text->front() == '0';
+  if (error == std::errc() && end == text->data() + text->size() && !octal) return seed;
+  report.add(node.spot, fmt::format("{}: found {}, allowed: a whole number from 0 to 18446744073709551615", where, quote(*text)));
+  return {};
+}
+
+void read_run(const Node& node, RunSettings& run, Report& report) {
+  if (node.is_none() || !require_map(node, "run", "a map such as {duration: 2 s}", report)) return;
+  check_keys(node, "run: ", run_keys(), report);
+  if (const Node* n = node.find("clock"))
+    if (const auto name = read_choice(*n, "run: clock", clocks(), report)) run.clock = clock_named(*name);
+  if (const Node* n = node.find("duration"))
+    if (const auto t = read_time(*n, "run: duration", report)) run.duration_s = *t;
+  if (const Node* n = node.find("seed"))
+    if (const auto seed = read_seed(*n, "run: seed", report)) run.seed = *seed;
+  if (const Node* n = node.find("chunk"))
+    if (const auto chunk = read_integer(*n, "run: chunk", 1, kLongestChunk, report)) run.chunk = *chunk;
+  if (const Node* n = node.find("latency"))
+    if (const auto t = read_time(*n, "run: latency", report)) run.latency_s = *t;
+  if (const Node* n = node.find("threads"))
+    if (const auto threads = read_integer(*n, "run: threads", 1, kMostThreads, report)) run.threads = static_cast<int>(*threads);
+  if (const Node* n = node.find("watchdog"))
+    if (const auto t = read_time(*n, "run: watchdog", report)) run.watchdog_s = *t;
+}
+
+}  // namespace bodeflow::graph

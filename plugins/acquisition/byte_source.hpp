@@ -1,0 +1,26 @@
+#pragma once
+
+#include <bodeflow/error.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace bodeflow::acquisition {
+
+/// Bytes that can be read again from their start.
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  /// Up to `size` bytes into `to`; how many, 0 at the end. Error: the system's reason.
+  virtual Expected<std::size_t> read(char* to, std::size_t size) = 0;
+  virtual Expected<void> rewind() = 0;
+};
+
+/// The bytes of a file. Error: why it can't be opened; a folder is refused.
+Expected<std::unique_ptr<ByteSource>> open_file(const std::string& path);
+
+/// The bytes of `text`, which outlives the source.
+std::unique_ptr<ByteSource> open_memory(std::string_view text);
+
+}  // namespace bodeflow::acquisition

@@ -1,0 +1,73 @@
+#include "summary.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "sampling.hpp"
+
+namespace bodeflow::acquisition {
+namespace {
+
+// A signal that passes its crest rarely stays on the same digit for three samples; a clipped one does, again and again.
+constexpr std::int64_t kRun = 3;
+constexpr std::int64_t kRuns = 3;
+
+}  // namespace
+
+void SummaryOfColumns::Extreme::take(double x, bool beyond, bool first) {
+  if (first || beyond) {
+    value = x;
+    run = 1;
+    runs = 0;
+  } else if (x == value) {
+    if (++run == kRun) ++runs;
+  } else {
+    run = 0;
+  }
+}
+
+SummaryOfColumns::SummaryOfColumns(std::size_t columns) : states_(columns) {}
+
+void SummaryOfColumns::add(std::span<const double> row) {
+  for (std::size_t c = 0; c < states_.size(); ++c) {
+    states_[c].least.take(row[c], row[c] < states_[c].least.value, first_);
+    states_[c].greatest.take(row[c], row[c] > states_[c].greatest.value, first_);
+  }
+  first_ = false;
+}
+
+std::vector<ColumnSummary> SummaryOfColumns::columns() const {
+  std::vector<ColumnSummary> all;
+  for (const State& s : states_) all.push_back({s.least.value, s.greatest.value, s.least.runs, s.greatest.runs});
+  return all;
+}
+
+double resolution_of(std::string_view number) {
+  const std::size_t e = number.find_first_of("eE");
+  const std::string_view digits = number.substr(0, e);
+  const std::size_t point = digits.find_first_of(".,");
+  int exponent = point == std::string_view::npos ? 0 : -static_cast<int>(std::min<std::size_t>(digits.size() - point - 1, 400));
+  if (e != std::string_view::npos) {
+    int written = 0;
+    const char* begin = number.data() + e + 1;
+    const char* const end = number.data() + number.size();
+    if (begin != end && *begin == '+') ++begin;
+    std::from_chars(begin, end, written);
+    exponent += std::abs(written) < 1000 ? written : 0;
+  }
+  return std::pow(10.0, exponent);
+}
+
+std::string clipping_suspicion(const ColumnSummary& column) {
+  if (column.least == column.greatest) return "";
+  std::string text;
+  const auto side = [&text](std::int64_t runs, double value) {
+    if (runs < kRuns) return;
+    text += (text.empty() ? "" : " and ") + std::to_string(runs) + " times at " + number_text(value);
+  };
+  side(column.runs_at_least, column.least);
+  side(column.runs_at_greatest, column.greatest);
+  return text.empty() ? "" : "rests " + text + " for three samples or more: clipped?";
+}
+
+}  // namespace bodeflow::acquisition

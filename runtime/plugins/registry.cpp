@@ -163,6 +163,16 @@ Registry::Registry(Options options) : state_(std::make_shared<State>()) {
   }
 }
 
+Registry Registry::with(std::vector<PluginDescription> plugins) {
+  Registry registry{Options{}};
+  registry.state_->plugins = std::move(plugins);
+  registry.state_->libraries.resize(registry.state_->plugins.size());
+  for (std::size_t i = 0; i < registry.state_->plugins.size(); ++i) {
+    if (registry.state_->plugins[i].refused.empty()) registry.state_->enter(i);
+  }
+  return registry;
+}
+
 Registry::~Registry() = default;
 Registry::Registry(Registry&&) noexcept = default;
 Registry& Registry::operator=(Registry&&) noexcept = default;

@@ -23,6 +23,8 @@ class Registry {
 
   /// Finds and probes; never throws because of a plugin, an absent folder or the cache.
   explicit Registry(Options options);
+  /// A registry of given descriptions, without files: graphs can be checked against it, blocks can't be made.
+  static Registry with(std::vector<PluginDescription> plugins);
   ~Registry();
   Registry(Registry&&) noexcept;
   Registry& operator=(Registry&&) noexcept;

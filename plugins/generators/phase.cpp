@@ -1,0 +1,76 @@
+#include "phase.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace bodeflow::generators {
+namespace {
+
+// (2 pi)^(2k+1) / (2k+1)! with alternating signs: the Taylor series of sin(2 pi x). Up to |x| = 1/4 the first term left out is
+// below 2e-18.
+constexpr int kTerms = 11;
+
+struct Series {
+  double coefficients[kTerms];
+};
+
+constexpr Series make_series() {
+  Series series{};
+  const long double two_pi = 2 * std::numbers::pi_v<long double>;
+  long double term = two_pi;
+  for (int k = 0; k < kTerms; ++k) {
+    series.coefficients[k] = static_cast<double>(term);
+    term *= -two_pi * two_pi / static_cast<long double>((2 * k + 2) * (2 * k + 3));
+  }
+  return series;
+}
+
+constexpr Series kSine = make_series();
+
+}  // namespace
+
+Phase Phase::from_radians(double radians) {
+  const double cycles = radians / (2 * std::numbers::pi);
+  const double fraction = cycles - std::floor(cycles);
+  // 2^64 itself, from a tiny negative phase, is a whole cycle and falls off.
+  return Phase(static_cast<Fraction128>(std::ldexp(fraction, 64)) << 64);
+}
+
+Phase Phase::step(double frequency_hz, Rate rate) {
+  int exponent = 0;
+  const auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::frexp(frequency_hz, &exponent), 53));
+  exponent -= 53;
+  // frequency / rate = mantissa * den * 2^exponent / num: a long division for 128 binary places.
+  const Fraction128 above = static_cast<Fraction128>(mantissa) * static_cast<std::uint64_t>(rate.den);
+  const auto below = static_cast<std::uint64_t>(rate.num);
+  Fraction128 quotient = above / below;
+  auto rest = static_cast<std::uint64_t>(above % below);
+  const int places = 128 + exponent;
+  if (places < 0) return Phase(-places < 128 ? quotient >> -places : 0);
+  for (int place = 0; place < places; ++place) {
+    const bool one = rest >= below - rest;
+    rest = one ? rest - (below - rest) : rest + rest;
+    quotient = 2 * quotient + (one ? 1 : 0);
+  }
+  return Phase(quotient + (rest >= below - rest ? 1 : 0));
+}
+
+double Phase::cycles() const {
+  // The upper half rounded to nearest, read as a signed number: the fraction nearest to zero.
+  const auto upper = static_cast<std::uint64_t>(fraction_ >> 64);
+  const auto round = static_cast<std::uint64_t>(fraction_ >> 63) & 1u;
+  return static_cast<double>(static_cast<std::int64_t>(upper + round)) * 0x1.0p-64;
+}
+
+double sine_of_cycles(double cycles) {
+  // Into [-1/4, 1/4]; both differences are exact.
+  double x = cycles;
+  x = x > 0.25 ? 0.5 - x : x;
+  x = x < -0.25 ? -0.5 - x : x;
+  const double square = x * x;
+  double sum = kSine.coefficients[kTerms - 1];
+  for (int k = kTerms - 1; k-- > 0;) sum = sum * square + kSine.coefficients[k];
+  return x * sum;
+}
+
+}  // namespace bodeflow::generators

@@ -1,0 +1,35 @@
+#include "source.hpp"
+
+#include <cstdio>
+
+namespace bodeflow::generators {
+
+void describe_source(Describe& d) {
+  d.required<double>("sample_rate").unit("Hz").range(1e-6, kMaxRateHz).doc("samples per second");
+  d.parameter("unit", "").doc("unit of the stream, such as V; the numbers of this block are in it");
+}
+
+Rate source_rate(const Parameters& p) {
+  const double hz = p.number("sample_rate");
+  const Rate rate = Rate::from_hz(hz);
+  if (!rate.known()) fail("sample_rate " + hertz(hz) + " is not a fraction of whole numbers that the engine can hold");
+  return rate;
+}
+
+StreamFacts source_facts(Rate rate, const std::string& unit, int channels, std::int64_t length) {
+  StreamFacts facts;
+  facts.known = true;
+  facts.channels = channels;
+  facts.rate = rate;
+  facts.length = length;
+  facts.unit = unit;
+  return facts;
+}
+
+std::string hertz(double frequency) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.10g Hz", frequency);
+  return text;
+}
+
+}  // namespace bodeflow::generators

@@ -45,7 +45,7 @@ struct HostFunctions {
     const char* path = nullptr;
     guarded(host, [&](Host& self) {
       if (name == nullptr) return self.set_error("output_path: the name is a null pointer"), BF_FAILED;
-      if (self.services_ == nullptr || !self.services_->output_path) return BF_OK;  // a check: no path, no error
+      if (self.services_ == nullptr || !self.services_->output_path) return path = "", BF_OK;  // a check: no path, no error
       auto found = self.services_->output_path(self.block_, name);
       if (!found) return self.set_error(found.error().c_str()), BF_FAILED;
       const std::lock_guard lock(self.mutex_);

@@ -206,7 +206,7 @@ typedef struct bf_files {
   int32_t (*note_input)(const bf_host* host, const char* path);
   /* [control] The absolute path of a file that the block may write: inside the run directory. Returns NULL, with the
    * reason in host->error, for an absolute path, one that leaves the directory, or one that another block writes.
-   * The string lives as long as the block. During a check there is no run directory: NULL without an error. */
+   * The string lives as long as the block. During a check there is no run directory: the empty string. */
   const char* (*output_path)(const bf_host* host, const char* name);
 } bf_files;
 

@@ -27,7 +27,8 @@ class Services {
   std::optional<std::string> output_path(const std::string& name) const {
     if (files_ == nullptr) return std::nullopt;
     const char* path = files_->output_path(host_, name.c_str());
-    if (path == nullptr) return std::nullopt;
+    if (path == nullptr) throw HostRefused();
+    if (*path == '\0') return std::nullopt;
     return std::string(path);
   }
 

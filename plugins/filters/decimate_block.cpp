@@ -1,0 +1,62 @@
+#include "decimate_block.hpp"
+
+namespace bodeflow::filters {
+
+void Decimate::describe(Describe& d) {
+  d.id("filters.decimate")
+      .summary("Lowers the sample rate by a whole factor, behind an anti-alias filter.")
+      .realtime_safe()
+      .cost_ns(400);
+  d.doc(
+      "y[m] = sum_j h[j] x[m factor - j], h a Kaiser-windowed sinc of linear phase with gain 1 at zero frequency: it passes up "
+      "to pass_band of the "
+      "new Nyquist frequency (ripple at most twice the attenuation's figure, 2e-4 for 80 dB) and stops from the new Nyquist "
+      "frequency on. Its delay is "
+      "the same at all frequencies and a whole number of output samples, K = 26 for 80 dB and 0.8, so a spectrum is only turned "
+      "by "
+      "exp(-j 2 pi f K / rate); the first 2 K outputs contain the start from zero. With anti_alias: false y[m] = x[m factor], "
+      "without delay, and all "
+      "that lies above the new Nyquist frequency folds down.");
+  d.reference("J. F. Kaiser, Nonrecursive digital filter design using the I0-sinh window function, 1974");
+  d.required<std::int64_t>("factor").range(1, 1 << 16).doc("input samples for each output sample");
+  d.parameter("anti_alias", true).doc("false: samples are left out without a filter");
+  d.parameter("pass_band", 0.8)
+      .unit("1")
+      .range(0.1, 0.98)
+      .doc("end of the pass band, as a fraction of the new Nyquist frequency");
+  d.parameter("attenuation", 80.0).unit("dB").range(21, 160).doc("of all that would fold down");
+  d.stream_in(in);
+  d.stream_out(out).same_as(in);
+}
+
+void Decimate::configure(const Parameters& p) {
+  factor_ = p.integer("factor");
+  const bool filtered = p.boolean("anti_alias") && factor_ > 1;
+  taps_ = filtered ? anti_alias_taps(static_cast<std::size_t>(factor_), p.number("pass_band"), p.number("attenuation"))
+                   : std::vector<double>{1.0};
+}
+
+void Decimate::resolve(Facts& f) {
+  f.samples(in, factor_);
+  channels_ = f.in(in).channels;
+  StreamFacts& y = f.out(out);
+  y.rate = y.rate.scaled(1, factor_);
+  if (y.length >= 0) y.length /= factor_;
+}
+
+void Decimate::activate(const Activation& a) {
+  decimators_.assign(static_cast<std::size_t>(channels_),
+                     Decimator(taps_, static_cast<std::size_t>(factor_), static_cast<std::size_t>(a.max_count)));
+}
+
+void Decimate::process(Io& io) {
+  for (std::size_t c = 0; c < decimators_.size(); ++c) {
+    decimators_[c].run(io.read(in, static_cast<int>(c)), io.write(out, static_cast<int>(c)));
+  }
+}
+
+void Decimate::reset() {
+  for (Decimator& decimator : decimators_) decimator.reset();
+}
+
+}  // namespace bodeflow::filters

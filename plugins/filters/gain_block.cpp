@@ -1,0 +1,50 @@
+#include "gain_block.hpp"
+
+namespace bodeflow::filters {
+
+void Gain::describe(Describe& d) {
+  d.id("filters.gain").summary("Multiplies a stream by a constant.").realtime_safe().in_place().cost_ns(0.4);
+  d.doc("y[n] = gain x[n] in every channel, real or complex.");
+  d.parameter("gain", 1.0).unit("").live().doc("factor; may carry a unit of its own, such as 5 V/A");
+  d.optional<std::string>("unit").doc("unit of the output; that of the input where it is left out");
+  d.stream_in(in);
+  d.stream_out(out).same_as(in);
+}
+
+void Gain::configure(const Parameters& p) {
+  change(p);
+  configured_ = gain_;
+  has_unit_ = p.has("unit");
+  if (has_unit_) unit_ = p.text("unit");
+}
+
+void Gain::resolve(Facts& f) {
+  if (!has_unit_ || !f.out(out).known) return;
+  f.out(out).unit = unit_;
+  f.out(out).channel_units.clear();
+}
+
+void Gain::activate(const Activation&) { reset(); }
+
+void Gain::process(Io& io) {
+  if (io.element(in) == BF_C64) {
+    multiply<std::complex<double>>(io);
+  } else {
+    multiply<double>(io);
+  }
+}
+
+void Gain::change(const Parameters& p) { gain_ = p.number("gain"); }
+
+void Gain::reset() { gain_ = configured_; }
+
+template <class T>
+void Gain::multiply(Io& io) const {
+  for (int c = 0; c < io.channels(in); ++c) {
+    const auto x = io.read<T>(in, c);
+    const auto y = io.write<T>(out, c);
+    for (std::size_t n = 0; n < x.size(); ++n) y[n] = x[n] * gain_;
+  }
+}
+
+}  // namespace bodeflow::filters

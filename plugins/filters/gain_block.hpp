@@ -1,0 +1,32 @@
+#pragma once
+
+#include <bodeflow/block.hpp>
+#include <string>
+
+namespace bodeflow::filters {
+
+/// y[n] = gain x[n], channel by channel.
+class Gain final : public Block {
+ public:
+  static constexpr In<Any> in{0, "in"};
+  static constexpr Out<Any> out{0, "out"};
+
+  static void describe(Describe& d);
+  void configure(const Parameters& p) override;
+  void resolve(Facts& f) override;
+  void activate(const Activation& a) override;
+  void process(Io& io) override;
+  void change(const Parameters& p) override;
+  void reset() override;
+
+ private:
+  template <class T>
+  void multiply(Io& io) const;
+
+  double configured_ = 1.0;
+  double gain_ = 1.0;
+  bool has_unit_ = false;
+  std::string unit_;
+};
+
+}  // namespace bodeflow::filters

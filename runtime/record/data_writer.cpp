@@ -47,7 +47,6 @@ std::string level_of(const Origin& origin) {
 Handle file_access(bool appending) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "can't set up HDF5");
   h5::check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "can't set up HDF5");
-  h5::check(H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG), "can't set up HDF5");
   h5::check(H5Pset_file_locking(access.id(), true, true), "can't set up HDF5");
   if (appending) return access;
   H5AC_cache_config_t cache;

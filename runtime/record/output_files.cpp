@@ -30,6 +30,19 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
   return end == folder.end();
 }
 
+/// True where a symbolic link on the way ends outside of `root`, or nowhere. Looked at before folders are made.
+bool leaves(const fs::path& root, const fs::path& relative) {
+  fs::path place = root;
+  for (const auto& step : relative) {
+    place /= step;
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(place, error))) continue;
+    const fs::path target = fs::canonical(place, error);
+    if (error || !lies_in(target, root)) return true;
+  }
+  return false;
+}
+
 /// "name.csv" in its k-th phase: "name@k.csv".
 fs::path numbered(const fs::path& path, int k) {
   if (k == 1) return path;
@@ -57,9 +70,7 @@ tl::expected<std::string, std::string> OutputFiles::claim(const std::string& blo
   const fs::path root = fs::canonical(directory_, error);
   if (error) return refuse("the run directory is gone: " + error.message());
   const fs::path full = root / relative;
-  const fs::path real = fs::weakly_canonical(full, error);  // before folders are made: they must not be made outside
-  if (error) return refuse(error.message());
-  if (!lies_in(real, root)) return refuse("a symbolic link leads out of the run directory");
+  if (leaves(root, relative)) return refuse("a symbolic link leads out of the run directory");
   fs::create_directories(full.parent_path(), error);
   if (error) return refuse(fmt::format("can't make its folder: {}", error.message()));
   if (fs::exists(fs::symlink_status(full, error))) return refuse("it exists in the run directory already");

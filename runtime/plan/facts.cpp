@@ -35,10 +35,4 @@ tl::expected<Facts, Problems> establish_facts(const graph::Phase& phase, const R
   return facts;
 }
 
-tl::expected<Facts, Problems> establish_facts(const graph::Phase& phase,
-                                              const std::vector<std::unique_ptr<Instance>>& instances) {
-  return establish_facts(phase,
-                         [&](int block, const std::vector<StreamFacts>& inputs) { return instances[block]->resolve(inputs); });
-}
-
 }  // namespace bodeflow::plan

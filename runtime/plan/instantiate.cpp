@@ -1,4 +1,4 @@
-#include "plan/plan.hpp"
+#include "plan/facts.hpp"
 
 namespace bodeflow::plan {
 
@@ -19,6 +19,12 @@ tl::expected<std::vector<std::unique_ptr<Instance>>, Problems> instantiate(const
   }
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return instances;
+}
+
+tl::expected<Facts, Problems> establish_facts(const graph::Phase& phase,
+                                              const std::vector<std::unique_ptr<Instance>>& instances) {
+  return establish_facts(phase,
+                         [&](int block, const std::vector<StreamFacts>& inputs) { return instances[block]->resolve(inputs); });
 }
 
 }  // namespace bodeflow::plan

@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <bodeflow/testing/conformance.hpp>
+#include <bodeflow/units.hpp>
+#include <cmath>
+
+#include "checks.hpp"
+#include "descriptor_check.hpp"
+#include "plugin_file.hpp"
+
+namespace bodeflow::testing {
+namespace {
+
+std::string joined(const std::vector<std::string>& texts) {
+  std::string all;
+  for (const std::string& t : texts) all += (all.empty() ? "" : "; ") + t;
+  return all;
+}
+
+std::string text_of(const Setting& setting) {
+  std::vector<std::string> parts;
+  for (const auto& [name, value] : setting) parts.push_back(name + " = " + value);
+  std::string text;
+  for (const std::string& p : parts) text += (text.empty() ? "" : ", ") + p;
+  return text;
+}
+
+double quantity(const std::string& text, const char* unit) {
+  const auto value = convert(text, unit);
+  if (!value) fail(value.error().text);
+  return *value;
+}
+
+/// What a name with '@' says about the feed.
+void set_feed(Feed& feed, const std::string& name, const std::string& value) {
+  if (name == "@rate") {
+    feed.rate = Rate::from_hz(quantity(value, "Hz"));
+    if (!feed.rate.known()) fail("@rate: '" + value + "' is not a rate");
+  } else if (name == "@channels") {
+    feed.channels = static_cast<std::uint32_t>(std::clamp(quantity(value, "1"), 1.0, 1024.0));
+  } else if (name == "@firings") {
+    feed.firings = static_cast<std::uint64_t>(std::clamp(quantity(value, "1"), 1.0, 1e7));
+  } else if (name == "@element" && (value == "f64" || value == "c64")) {
+    feed.element = value == "f64" ? BF_F64 : BF_C64;
+  } else {
+    fail("'" + name + " = " + value + "' is unknown; known: @rate, @channels, @firings, @element = f64 or c64");
+  }
+}
+
+/// The case of a setting. Throws Failure for a parameter that does not exist or a value that it can't have.
+Case make_case(const bf_factory& factory, const Setting& setting) {
+  Case c;
+  c.factory = &factory;
+  c.block = static_cast<const bf_block_descriptor*>(factory.descriptor);
+  for (std::uint32_t i = 0; i < c.block->parameter_count; ++i) c.values.push_back(fallback_of(*c.block->parameters[i]));
+  for (const auto& [name, value] : setting) {
+    if (!name.empty() && name[0] == '@') {
+      set_feed(c.feed, name, value);
+      continue;
+    }
+    std::uint32_t index = 0;
+    while (index < c.block->parameter_count && name != c.block->parameters[index]->name) ++index;
+    if (index == c.block->parameter_count) fail("unknown parameter '" + name + "'");
+    auto parsed = parse_parameter(*c.block->parameters[index], value);
+    if (!parsed) fail(parsed.error().text);
+    c.values[index] = *parsed;
+  }
+  for (std::uint32_t i = 0; i < c.block->parameter_count; ++i) {
+    const bf_parameter_descriptor& p = *c.block->parameters[i];
+    if ((p.flags & BF_PARAMETER_REQUIRED) != 0 && !c.values[i].given) {
+      throw Skip{std::string("parameter '") + p.name + "' is required: give a setting"};
+    }
+  }
+  return c;
+}
+
+bool needs_setting(const bf_block_descriptor& block) {
+  return std::any_of(block.parameters, block.parameters + block.parameter_count,
+                     [](const bf_parameter_descriptor* p) { return (p->flags & BF_PARAMETER_REQUIRED) != 0; });
+}
+
+/// Tests one plugin; collects into the report.
+class Suite {
+ public:
+  Suite(Report& report, const Options& options) : report_(report), options_(options) {}
+
+  void run() {
+    if (!check("", "", "has an ELF note that tells what it is", [&](const Step&) { read_note(report_.file); })) return;
+    if (!check("", "", "loads and gives its factories", [&](const Step&) { load_plugin(report_.file); })) return;
+    const LoadedPlugin plugin = load_plugin(report_.file);
+    check("", "", "has a sound entry", [&](const Step&) {
+      auto problems = plugin_problems(*plugin.plugin, plugin.factories, plugin.count);
+      const bf_elf_note note = read_note(report_.file);
+      if (note.magic != plugin.plugin->magic || note.abi_major != plugin.plugin->abi_major ||
+          note.abi_minor != plugin.plugin->abi_minor || std::string(note.name) != plugin.plugin->name ||
+          std::string(note.version) != plugin.plugin->version) {
+        problems.push_back("ELF note and entry differ");
+      }
+      if (!problems.empty()) fail(joined(problems));
+    });
+    for (std::uint32_t i = 0; i < plugin.count; ++i) {
+      const bf_factory& f = *plugin.factories[i];
+      if (std::string(f.kind) == "block" && (options_.block.empty() || options_.block == f.id)) block(f);
+    }
+  }
+
+ private:
+  bool check(const std::string& id, const std::string& setting, const std::string& name,
+             const std::function<void(const Step&)>& work) {
+    Verdict verdict = judge(work, options_.isolate, options_.timeout_s);
+    if (verdict.status == Status::skip && verdict.reason == "not claimed") return true;  // a claim not made is nothing to report
+    report_.checks.push_back({id, setting, name, verdict.status, std::move(verdict.reason)});
+    return report_.checks.back().status == Status::pass;
+  }
+
+  void block(const bf_factory& factory) {
+    const bool sound = check(factory.id, "", "has a sound descriptor", [&](const Step&) {
+      const auto problems = descriptor_problems(factory);
+      if (!problems.empty()) fail(joined(problems));
+    });
+    const auto* descriptor = static_cast<const bf_block_descriptor*>(factory.descriptor);
+    if (!sound && descriptor == nullptr) return;
+    std::vector<Setting> settings;
+    if (const auto given = options_.settings.find(factory.id); given != options_.settings.end()) settings = given->second;
+    if (settings.empty() || !needs_setting(*descriptor)) settings.insert(settings.begin(), Setting{});
+    const Setting base = settings.front();
+    for (const Setting& setting : settings) test(factory, setting, true);
+    for (const Setting& setting : variants(*descriptor, base)) test(factory, setting, false);
+  }
+
+  /// The base setting with one switch or choice turned, more channels, complex samples, unconnected inputs.
+  static std::vector<Setting> variants(const bf_block_descriptor& block, const Setting& base) {
+    std::vector<Setting> list;
+    const auto add = [&](const std::string& name, const std::string& value) {
+      Setting s;
+      for (const auto& pair : base) {
+        if (pair.first != name) s.push_back(pair);
+      }
+      s.emplace_back(name, value);
+      if (s != base) list.push_back(std::move(s));
+    };
+    bool streams_in = false, any = false;
+    for (std::uint32_t i = 0; i < block.port_count; ++i) {
+      const bf_port_descriptor& p = *block.ports[i];
+      streams_in = streams_in || (p.kind == BF_STREAM && p.direction == BF_IN);
+      any = any || (p.kind == BF_STREAM && p.direction == BF_IN && p.element == BF_ANY);
+    }
+    if (streams_in) add("@channels", "3");
+    if (any) add("@element", "c64");
+    for (std::uint32_t i = 0; i < block.parameter_count; ++i) {
+      const bf_parameter_descriptor& p = *block.parameters[i];
+      if (p.type == BF_BOOL) add(p.name, p.fallback.rows != 0 && p.fallback.integer != 0 ? "false" : "true");
+      for (std::uint32_t k = 0; p.type == BF_CHOICE && k < p.choice_count; ++k) {
+        if (p.fallback.rows == 0 || std::string(p.choices[k]) != p.fallback.strings[0]) add(p.name, p.choices[k]);
+      }
+    }
+    return list;
+  }
+
+  /// Runs every check of one setting. A setting that the block itself refuses is skipped with the block's words.
+  void test(const bf_factory& factory, const Setting& setting, bool with_parameters) {
+    const std::string text = text_of(setting);
+    Case c;
+    const bool usable = check(factory.id, text, "can be set up", [&](const Step& step) {
+      c = make_case(factory, setting);
+      set_up(c, step);
+    });
+    if (!usable) return;
+    try {
+      c = make_case(factory, setting);
+    } catch (const std::exception&) {
+      return;
+    }
+    for (const BlockCheck& one : case_checks()) run(factory.id, text, one, c);
+    if (!with_parameters) return;
+    for (const BlockCheck& one : parameter_checks(*c.block)) run(factory.id, text, one, c);
+    test_unconnected(factory.id, text, c);
+  }
+
+  void run(const std::string& id, const std::string& text, const BlockCheck& one, const Case& c) {
+    check(id, text, one.name, [&](const Step& step) { one.run(c, step); });
+  }
+
+  static void set_up(const Case& c, const Step& step) {
+    try {
+      Rig rig(c);
+      step("configure");
+      rig.configure();
+      step("resolve");
+      rig.resolve();
+      step("activate");
+      rig.activate(1000);
+    } catch (const Failure& refused) {
+      throw Skip{refused.what()};
+    }
+  }
+
+  void test_unconnected(const std::string& id, const std::string& text, const Case& c) {
+    const bool optional = std::any_of(c.block->ports, c.block->ports + c.block->port_count, [](const bf_port_descriptor* p) {
+      return p->kind == BF_STREAM && (p->flags & BF_PORT_OPTIONAL) != 0;
+    });
+    if (!optional) return;
+    Case open = c;
+    open.feed.optional_connected = false;
+    const std::string label = text + (text.empty() ? "" : ", ") + "optional inputs unconnected";
+    if (!check(id, label, "can be set up", [&](const Step& step) { set_up(open, step); })) return;
+    for (const BlockCheck& one : case_checks()) run(id, label, one, open);
+  }
+
+  Report& report_;
+  const Options& options_;
+};
+
+}  // namespace
+
+Report check_plugin(const std::string& file, const Options& options) {
+  Report report;
+  report.file = file;
+  Suite(report, options).run();
+  return report;
+}
+
+}  // namespace bodeflow::testing

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "plan/plan.hpp"
-
 #include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "plan/plan.hpp"
 
 namespace bodeflow::execute {
 
@@ -23,21 +23,21 @@ class Sink {
 };
 
 struct Progress {
-  double time_s = 0.0;      ///< of the run's clock, done
-  double total_s = 0.0;     ///< 0: not known
-  double rate = 0.0;        ///< seconds of the run's clock per second of wall time
+  double time_s = 0.0;   ///< of the run's clock, done
+  double total_s = 0.0;  ///< 0: not known
+  double rate = 0.0;     ///< seconds of the run's clock per second of wall time
 };
 
 struct Options {
   std::uint64_t seed = 1;
   graph::Clock clock = graph::Clock::simulated;
   double watchdog_s = 10.0;
-  std::uint32_t vector_level = 1; ///< bf_activation::vector_level
-  std::uint64_t first_chunk = 0;  ///< repetitions of a shorter first chunk (tests of bit-identity); 0: none
-  std::int64_t call_limit = 0;    ///< most firings in one process call, 0: as many as the chunk has
-  const std::atomic<bool>* stop = nullptr;                ///< set: end now, as partial
-  std::function<void(const Progress&)> progress;          ///< called a few times a second from a thread of its own
-  bool metrics = true;                                    ///< time and calls of each block
+  std::uint32_t vector_level = 1;                 ///< bf_activation::vector_level
+  std::uint64_t first_chunk = 0;                  ///< repetitions of a shorter first chunk (tests of bit-identity); 0: none
+  std::int64_t call_limit = 0;                    ///< most firings in one process call, 0: as many as the chunk has
+  const std::atomic<bool>* stop = nullptr;        ///< set: end now, as partial
+  std::function<void(const Progress&)> progress;  ///< called a few times a second from a thread of its own
+  bool metrics = true;                            ///< time and calls of each block
 };
 
 /// A record of an earlier phase for a message input, delivered at time zero.
@@ -48,23 +48,37 @@ struct InitialRecord {
 
 struct BlockMetrics {
   std::uint64_t calls = 0, firings = 0;
-  double seconds = 0.0;           ///< sampled, scaled up
-  std::uint64_t dropped = 0;      ///< input samples left over at the end of the streams
+  double seconds = 0.0;       ///< sampled, scaled up
+  std::uint64_t dropped = 0;  ///< input samples left over at the end of the streams
 };
 
 struct Outcome {
   enum class Status { complete, partial };
   Status status = Status::complete;
-  bool interrupted = false;       ///< by Options::stop
-  int failed_block = -1;          ///< whose error ended the run, or -1
-  bool hung = false;              ///< a block never came back: its thread lives on, so neither instances nor libraries may be freed
-  std::string reason;             ///< why a run is partial
-  double time_s = 0.0;            ///< of the run's clock that was done
+  bool interrupted = false;  ///< by Options::stop
+  int failed_block = -1;     ///< whose error ended the run, or -1
+  bool hung = false;         ///< a block never came back: its thread lives on, so neither instances nor libraries may be freed
+  std::string reason;        ///< why a run is partial
+  double time_s = 0.0;       ///< of the run's clock that was done
   double wall_s = 0.0;
+  std::uint64_t overruns = 0;  ///< real-time clock: chunks that began late, answers of asynchronous blocks that were waited for
   std::vector<BlockMetrics> metrics;
 };
 
-/// Runs a planned phase to its end: activates, processes, finishes, deactivates the instances. Never throws.
+/// What came of running a planned phase to its end: activates, processes, finishes, deactivates the instances. Never throws.
+///
+/// Threads: activate and deactivate are called on the caller's thread, a partition's blocks on that partition's thread,
+/// asynchronous blocks on a worker each, finish on one thread after all of these; Sink on whichever thread runs the block. The
+/// caller waits meanwhile and watches over their progress.
+///
+/// Ends: a delay does not lengthen a stream: a block makes floor(n / samples) firings for n samples that its producer made,
+/// whatever the delay; what is left over is dropped and counted, the initial samples of a delay are not. The records that
+/// take effect after a block's last firing are given to it before its finish(); changes are not.
+///
+/// Errors end the run as partial, with the block and its own words; the first one of several threads stands. Without any
+/// call completed for Options::watchdog_s the run ends with a reason that names who waits for whom. A call that hangs can't be
+/// cancelled: then `hung` is set, the block in that call is not deactivated, its thread stays behind, detached, with its
+/// memory. The caller must not destroy that instance, or unload its plugin, and should end the process soon.
 Outcome execute(const graph::Phase& phase, const plan::Facts& facts, const plan::Plan& plan,
                 const std::vector<std::unique_ptr<Instance>>& instances, const std::vector<InitialRecord>& initial, Sink& sink,
                 const Options& options);

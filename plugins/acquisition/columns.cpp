@@ -76,7 +76,7 @@ Expected<std::size_t> find_column(const std::vector<Column>& columns, const std:
     return unexpected("column '" + wanted + "' is ambiguous: " + list_of(headers));
   }
   const Column* nearest = nullptr;
-  std::size_t best = wanted.size() / 3 + 1;
+  std::size_t best = wanted.size() / 3;
   for (const Column& c : columns) {
     headers.push_back(c.header);
     const std::size_t d = std::min(edit_distance(lower(wanted), lower(c.header)), edit_distance(lower(wanted), lower(c.name)));

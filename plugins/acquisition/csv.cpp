@@ -79,6 +79,7 @@ Expected<void> CsvReader::go_to_rows(std::span<const std::size_t> selected, bool
     const auto more = lines_.next();
     if (!more) return refuse(more.error());
     if (!*more) return unexpected(name_ + ": changed while it was read");
+    if (!lines_.line().empty() && lines_.line().front() == '#') ++comments_;
   }
   return {};
 }

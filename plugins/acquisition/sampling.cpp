@@ -33,7 +33,7 @@ std::string number_text(double value) {
 }
 
 std::string Sampling::describe_step(double step) const {
-  const double expected = count_ > 1 ? 0.5 * (least_ + greatest_) : step;
+  const double expected = interval_s();
   int digits = 0;
   const std::string steps = number_text(roundest(step, 1e-6, digits)) + " s";
   const std::string interval = number_text(roundest(expected, 1e-3, digits)) + " s";

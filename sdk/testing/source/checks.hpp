@@ -12,12 +12,15 @@ namespace bodeflow::testing {
 struct BlockCheck {
   std::string name;
   std::function<void(const Case&, const Step&)> run;
+  unsigned timeout_s = 0;       ///< 0: as the options say
+  bool hang_is_failure = true;  ///< else it is skipped: with values that a host refuses
 };
 
 /// The checks that every case of a block goes through.
 std::vector<BlockCheck> case_checks();
 
-/// The checks of a block's parameters, one a parameter: values outside of their range or extreme never crash.
+/// The checks of a block's parameters: extreme values in their range are taken or refused in a moment, values outside of it,
+/// which a host refuses, never crash.
 std::vector<BlockCheck> parameter_checks(const bf_block_descriptor& block);
 
 /// The trace of a new instance.

@@ -37,12 +37,14 @@ void set_feed(Feed& feed, const std::string& name, const std::string& value) {
     if (!feed.rate.known()) fail("@rate: '" + value + "' is not a rate");
   } else if (name == "@channels") {
     feed.channels = static_cast<std::uint32_t>(std::clamp(quantity(value, "1"), 1.0, 1024.0));
+  } else if (name == "@period") {
+    feed.period = static_cast<std::uint64_t>(std::clamp(quantity(value, "1"), 1.0, 1e7));
   } else if (name == "@firings") {
     feed.firings = static_cast<std::uint64_t>(std::clamp(quantity(value, "1"), 1.0, 1e7));
   } else if (name == "@element" && (value == "f64" || value == "c64")) {
     feed.element = value == "f64" ? BF_F64 : BF_C64;
   } else {
-    fail("'" + name + " = " + value + "' is unknown; known: @rate, @channels, @firings, @element = f64 or c64");
+    fail("'" + name + " = " + value + "' is unknown; known: @rate, @channels, @period, @firings, @element = f64 or c64");
   }
 }
 
@@ -106,8 +108,11 @@ class Suite {
  private:
   bool check(const std::string& id, const std::string& setting, const std::string& name,
              const std::function<void(const Step&)>& work) {
-    Verdict verdict = judge(work, options_.isolate, options_.timeout_s);
-    if (verdict.status == Status::skip && verdict.reason == "not claimed") return true;  // a claim not made is nothing to report
+    return note(id, setting, name, judge(work, options_.isolate, options_.timeout_s));
+  }
+
+  bool note(const std::string& id, const std::string& setting, const std::string& name, Verdict verdict) {
+    if (verdict.status == Status::skip && verdict.reason.empty()) return true;
     report_.checks.push_back({id, setting, name, verdict.status, std::move(verdict.reason)});
     return report_.checks.back().status == Status::pass;
   }
@@ -177,7 +182,10 @@ class Suite {
   }
 
   void run(const std::string& id, const std::string& text, const BlockCheck& one, const Case& c) {
-    check(id, text, one.name, [&](const Step& step) { one.run(c, step); });
+    const unsigned timeout_s = one.timeout_s == 0 ? options_.timeout_s : std::min(one.timeout_s, options_.timeout_s);
+    Verdict verdict = judge([&](const Step& step) { one.run(c, step); }, options_.isolate, timeout_s);
+    if (verdict.timed_out && !one.hang_is_failure) verdict.status = Status::skip;
+    note(id, text, one.name, std::move(verdict));
   }
 
   static void set_up(const Case& c, const Step& step) {

@@ -48,6 +48,11 @@ std::string record_difference(const Case& the_case, const Trace& first, const st
 
 std::string difference(const Case& the_case, const Trace& first, const std::string& a, const Trace& second,
                        const std::string& b) {
+  if (first.failure != second.failure) {
+    const auto said = [](const Trace& t) { return t.failure.empty() ? std::string("no failure") : "'" + t.failure + "'"; };
+    return said(first) + " with " + a + ", " + said(second) + " with " + b;
+  }
+  if (!first.failure.empty()) return {};
   if (first.firings != second.firings) {
     return std::to_string(first.firings) + " firings with " + a + ", " + std::to_string(second.firings) + " with " + b;
   }

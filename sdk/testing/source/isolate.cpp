@@ -18,11 +18,11 @@ Verdict judge_here(const std::function<void(const Step&)>& work, const Step& ste
     work(step);
     return {};
   } catch (const Skip& skip) {
-    return {Status::skip, skip.reason};
+    return {Status::skip, skip.reason, false};
   } catch (const std::exception& e) {
-    return {Status::fail, e.what()};
+    return {Status::fail, e.what(), false};
   } catch (...) {
-    return {Status::fail, "an exception of an unknown type"};
+    return {Status::fail, "an exception of an unknown type", false};
   }
 }
 
@@ -90,15 +90,15 @@ Verdict read_verdict(const std::string& messages, int status, unsigned timeout_s
     std::memcpy(&length, messages.data() + at + 1, sizeof length);
     if (messages.size() - at - 5 < length) break;
     const std::string text = messages.substr(at + 5, length);
-    if (messages[at] == 'v' && !text.empty()) return {static_cast<Status>(text[0] - '0'), text.substr(1)};
+    if (messages[at] == 'v' && !text.empty()) return {static_cast<Status>(text[0] - '0'), text.substr(1), false};
     step = text;
     at += 5 + length;
   }
   const std::string where = step.empty() ? "" : " (" + step + ")";
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
-    return {Status::fail, "takes longer than " + std::to_string(timeout_s) + " s" + where};
-  if (WIFSIGNALED(status)) return {Status::fail, std::string("crashes: ") + strsignal(WTERMSIG(status)) + where};
-  return {Status::fail, "ends the process with exit code " + std::to_string(WEXITSTATUS(status)) + where};
+    return {Status::fail, "takes longer than " + std::to_string(timeout_s) + " s" + where, true};
+  if (WIFSIGNALED(status)) return {Status::fail, std::string("crashes: ") + strsignal(WTERMSIG(status)) + where, false};
+  return {Status::fail, "ends the process with exit code " + std::to_string(WEXITSTATUS(status)) + where, false};
 }
 
 }  // namespace
@@ -106,13 +106,13 @@ Verdict read_verdict(const std::string& messages, int status, unsigned timeout_s
 Verdict judge(const std::function<void(const Step&)>& work, bool isolate, unsigned timeout_s) {
   if (!isolate) return judge_here(work, [](const std::string&) {});
   int ends[2];
-  if (pipe(ends) != 0) return {Status::fail, std::string("no pipe: ") + std::strerror(errno)};
+  if (pipe(ends) != 0) return {Status::fail, std::string("no pipe: ") + std::strerror(errno), false};
   std::fflush(nullptr);
   const pid_t pid = fork();
   if (pid < 0) {
     close(ends[0]);
     close(ends[1]);
-    return {Status::fail, std::string("no child process: ") + std::strerror(errno)};
+    return {Status::fail, std::string("no child process: ") + std::strerror(errno), false};
   }
   if (pid == 0) {
     close(ends[0]);

@@ -10,9 +10,10 @@ namespace bodeflow::testing {
 struct Verdict {
   Status status = Status::pass;
   std::string reason;
+  bool timed_out = false;
 };
 
-/// Thrown by a check that does not apply.
+/// Thrown by a check that can not be made, with the reason; without one by a check that does not apply and is not reported.
 struct Skip {
   std::string reason;
 };

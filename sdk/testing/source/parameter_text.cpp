@@ -18,9 +18,10 @@ std::string unquoted(std::string_view text) {
   return std::string(text);
 }
 
-/// The entries of "[a, [b, c]]": "a", "[b, c]". Throws Failure if it is not a list.
+/// The entries of "[a, [b, c]]": "a", "[b, c]"; a text without brackets is a list of one. Throws Failure for half of a pair.
 std::vector<std::string_view> entries(std::string_view text) {
   text = trimmed(text);
+  if (!text.empty() && text.front() != '[' && text.back() != ']') return {text};
   if (text.size() < 2 || text.front() != '[' || text.back() != ']') fail("'" + std::string(text) + "' is not a list in brackets");
   text = text.substr(1, text.size() - 2);
   std::vector<std::string_view> list;

@@ -17,12 +17,13 @@ struct Feed {
   std::uint32_t element = BF_F64;  ///< of ports that take either
   Rate rate{1000, 1};
   std::uint64_t firings = 2600;
+  std::uint64_t period = 0;  ///< samples after which the signal repeats, but for some noise; 0: it is all noise
   bool optional_connected = true;
   enum class Signal { ordinary, bad } signal = Signal::ordinary;  ///< bad: NaN, infinite, denormal, huge
   enum class Messages { none, empty } messages = Messages::none;  ///< empty: a record without content to each message input
 
   bool operator==(const Feed& o) const {
-    return channels == o.channels && element == o.element && rate == o.rate && firings == o.firings &&
+    return channels == o.channels && element == o.element && rate == o.rate && firings == o.firings && period == o.period &&
            optional_connected == o.optional_connected && signal == o.signal && messages == o.messages;
   }
 };
@@ -80,6 +81,7 @@ struct Trace {
   bool inputs_intact = true;                                    ///< unless run in place
   std::vector<SentRecord> records;
   std::uint64_t firings = 0;
+  std::string failure;  ///< the block's words if process or finish failed
 };
 
 /// How a run is cut into calls.
@@ -95,7 +97,8 @@ struct Calls {
   bool all_at_once = false;  ///< a call may be as long as the run
 };
 
-/// One block under test. Throws Failure with the block's own words when a call fails.
+/// One block under test. Throws Failure with the block's own words when a call fails; only a run keeps them in its trace,
+/// because a block may refuse data.
 class Rig {
  public:
   explicit Rig(const Case& the_case);

@@ -12,8 +12,12 @@ namespace {
 
 /// Fills channel c of input i with the feed's signal, behind the initial samples of a delayed edge.
 void fill(void* place, const Lane& lane, std::size_t input, std::size_t channel, std::size_t samples, const FlowFacts& flow,
-          Feed::Signal signal) {
-  const auto sample = signal == Feed::Signal::bad ? bad_sample : ordinary_sample;
+          const Feed& feed) {
+  const auto sample = [&](std::size_t of_channel, std::uint64_t n) {
+    if (feed.signal == Feed::Signal::bad) return bad_sample(input, of_channel, n);
+    if (feed.period == 0) return ordinary_sample(input, of_channel, n);
+    return ordinary_sample(input, of_channel, n % feed.period) + 0.01 * ordinary_sample(input + 50, of_channel, n);
+  };
   auto* values = static_cast<double*>(place);
   const std::size_t parts = lane.element == BF_C64 ? 2 : 1;
   for (std::size_t n = 0; n < samples; ++n) {
@@ -22,7 +26,7 @@ void fill(void* place, const Lane& lane, std::size_t input, std::size_t channel,
         const std::size_t at = (channel * flow.delay + n) * parts + part;
         values[n * parts + part] = at < flow.initial.size() ? flow.initial[at] : 0.0;
       } else {
-        values[n * parts + part] = sample(input, channel + 1000 * part, n - flow.delay);
+        values[n * parts + part] = sample(channel + 1000 * part, n - flow.delay);
       }
     }
   }
@@ -70,7 +74,7 @@ void Run::make_inputs() {
     for (std::uint32_t c = 0; c < known[i].channels; ++c) {
       lane.buffers.push_back(std::make_shared<GuardedBuffer>(samples, element_size(lane.element), std::uint8_t{0}));
       lane.places.push_back(lane.buffers.back()->data());
-      fill(lane.places.back(), lane, i, c, samples, flow, rig_.case_.feed.signal);
+      fill(lane.places.back(), lane, i, c, samples, flow, rig_.case_.feed);
     }
     inputs_.push_back(std::move(lane));
   }
@@ -134,38 +138,47 @@ std::uint64_t Run::next_count(std::uint64_t position, std::uint64_t total) {
   return position < at ? std::min(count, at - position) : count;
 }
 
-void Run::process() {
-  if (!calls_.hooked) return rig_.require(rig_.block_.process(rig_.block_.self, &process_), "process");
+bool Run::took(std::int32_t result, const char* function) {
+  if (result == BF_OK) return true;
+  trace_.failure = std::string(function) + " fails: " + rig_.host_->take_error();
+  return false;
+}
+
+bool Run::process() {
+  if (!calls_.hooked) return took(rig_.block_.process(rig_.block_.self, &process_), "process");
   bodeflow_hook_begin();
   const std::int32_t result = rig_.block_.process(rig_.block_.self, &process_);
   const bodeflow_hook_counts counts = bodeflow_hook_end();
-  rig_.require(result, "process");
-  if (counts.first == nullptr) return;
+  if (!took(result, "process")) return false;
+  if (counts.first == nullptr) return true;
   fail(std::string("process calls ") + counts.first + " at firing " + std::to_string(process_.position) + " (" +
        std::to_string(counts.allocations) + " times memory, " + std::to_string(counts.locks) + " locks, " +
        std::to_string(counts.calls) + " times input, output or sleep in one call)");
 }
 
-Trace Run::whole() {
+void Run::call_all() {
   const bool streams = !in_.empty() || !out_.empty();
   const std::uint64_t total = streams ? rig_.firings() : 0;
   process_.messages = messages_.data();
   process_.message_count = static_cast<std::uint32_t>(messages_.size());
-  std::uint64_t position = 0;
-  for (bool ended = false; !ended && (position < total || process_.message_count != 0);) {
-    place(position, next_count(position, total));
-    process();
+  for (bool ended = false; !ended && (trace_.firings < total || process_.message_count != 0);) {
+    place(trace_.firings, next_count(trace_.firings, total));
+    if (!process()) return;
     if (process_.done > process_.count) {
       fail("process says that it made " + std::to_string(process_.done) + " of " + std::to_string(process_.count) + " firings");
     }
     ended = process_.done < process_.count;
-    position += process_.done;
+    trace_.firings += process_.done;
     process_.message_count = 0;
   }
-  place(position, 0);
-  rig_.require(rig_.block_.finish(rig_.block_.self, &process_), "finish");
+  place(trace_.firings, 0);
+  took(rig_.block_.finish(rig_.block_.self, &process_), "finish");
+}
+
+Trace Run::whole() {
+  call_all();
   if (!error_.empty()) fail(error_);
-  trace_.firings = position;
+  if (!trace_.failure.empty()) trace_.firings = 0;  // how much of the call was done before it failed is not defined
   collect();
   return std::move(trace_);
 }
@@ -183,7 +196,7 @@ void Run::collect() {
     const auto samples = static_cast<std::size_t>(rig_.firings() * lane.samples);
     for (std::size_t c = 0; c < lane.places.size(); ++c) {
       GuardedBuffer fresh(samples, element_size(lane.element), 0);
-      fill(fresh.data(), lane, i, c, samples, rig_.facts_.input_flows[i], rig_.case_.feed.signal);
+      fill(fresh.data(), lane, i, c, samples, rig_.facts_.input_flows[i], rig_.case_.feed);
       if (std::memcmp(fresh.data(), lane.places[c], samples * element_size(lane.element)) != 0) trace_.inputs_intact = false;
     }
   }

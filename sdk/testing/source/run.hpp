@@ -32,7 +32,10 @@ class Run {
   void place(std::uint64_t position, std::uint64_t count);
   /// How many firings the call at `position` has; makes the change that is due there.
   std::uint64_t next_count(std::uint64_t position, std::uint64_t total);
-  void process();
+  bool process();
+  /// False if that call failed; then the trace has the block's words.
+  bool took(std::int32_t result, const char* function);
+  void call_all();
   void collect();
 
   const Rig& rig_;

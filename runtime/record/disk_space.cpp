@@ -34,11 +34,11 @@ int take(int file, std::uint64_t from, std::uint64_t to) {
 
 tl::expected<void, std::string> DiskSpace::ensure(int file, std::uint64_t end) {
   const std::uint64_t need = end + kMargin;
-  if (need <= held_) return {};
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && need > limit.rlim_cur)
     return tl::unexpected(fmt::format("can't write '{}': the limit for the size of a file is reached (ulimit -f, {} bytes)",
                                       path_.string(), limit.rlim_cur));
+  if (need <= held_) return {};
   if (take(file, held_, need + kStep) == 0) {
     held_ = need + kStep;
     return {};

@@ -104,7 +104,9 @@ void CsvBlock::process(Io& io) {
       append_number(rows_, value);
     };
     // One rounding each in product and quotient: the product is exact below 2^53.
-    if (time_) add(static_cast<double>(io.position() + n) * static_cast<double>(rate_.den) / static_cast<double>(rate_.num));
+    if (time_)
+      append_decimal(rows_,
+                     static_cast<double>(io.position() + n) * static_cast<double>(rate_.den) / static_cast<double>(rate_.num));
     for (const Source& s : sources) {
       if (s.complex.empty()) {
         add(s.real[n]);

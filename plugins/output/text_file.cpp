@@ -51,4 +51,10 @@ void append_number(std::string& text, double value) {
   text.append(digits, end);
 }
 
+void append_decimal(std::string& text, double value) {
+  char digits[400];  // the longest double has 309 digits before the point, or some 340 after it
+  const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed).ptr;
+  text.append(digits, end);
+}
+
 }  // namespace bodeflow::output

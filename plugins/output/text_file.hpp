@@ -35,4 +35,7 @@ class TextFile {
 /// Appends the shortest digits that read back as the value: "0.1", "1e-09"; "nan", "inf", "-inf".
 void append_number(std::string& text, double value);
 
+/// The same without an exponent: "0.0004", not "4e-04".
+void append_decimal(std::string& text, double value);
+
 }  // namespace bodeflow::output

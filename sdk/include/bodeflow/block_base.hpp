@@ -44,7 +44,7 @@ class Block {
   virtual void change(const Parameters&) {}
   /// After the last sample: last records may be sent.
   virtual void finish(Io&) {}
-  /// Back to the state after `activate`.
+  /// Back to the state after `activate`. If live parameters changed since, `change` was called with the old values before.
   virtual void reset() {}
   /// Closes files, gives memory back.
   virtual void deactivate() {}

@@ -78,6 +78,8 @@ struct Border {
       if (count != b.values_.size())
         fail("the host gives " + std::to_string(count) + " parameters; described: " + std::to_string(b.values_.size()));
       for (std::uint32_t i = 0; i < count; ++i) b.store(i, values[i]);
+      b.configured_ = b.values_;
+      b.changed_ = false;
       b.base().configure(b.parameters());
     });
   }
@@ -127,6 +129,7 @@ struct Border {
     Border& b = of(self);
     return guarded(b.host_, [&] {
       if (parameter >= b.values_.size()) fail("the host changes a parameter that is not described");
+      b.changed_ = true;
       b.store(parameter, *value);
       b.base().change(b.parameters());
     });
@@ -142,7 +145,14 @@ struct Border {
 
   static std::int32_t reset(void* self) noexcept {
     Border& b = of(self);
-    return guarded(b.host_, [&] { b.base().reset(); });
+    return guarded(b.host_, [&] {
+      if (b.changed_) {  // live parameters go back as well
+        b.values_ = b.configured_;
+        b.changed_ = false;
+        b.base().change(b.parameters());
+      }
+      b.base().reset();
+    });
   }
 
   static void deactivate(void* self) noexcept {
@@ -161,7 +171,9 @@ struct Border {
   B block_;
   const bf_host* host_;
   const BlockType* type_;
-  std::vector<StoredValue> values_;
+  std::vector<StoredValue> values_;      ///< as they are now
+  std::vector<StoredValue> configured_;  ///< as configure gave them
+  bool changed_ = false;
   std::optional<Facts> facts_;  ///< keeps alive what the host was given
 };
 

@@ -209,7 +209,13 @@ void live(const Case& c, const Step& step) {
     change.change_value.given = true;
     change.change_at = 100;
     change.change_parameter = i;
-    const Trace whole = fresh_run(c, change);
+    Rig rig(c);
+    rig.configure();
+    rig.activate(1000);
+    const Trace whole = rig.run(change);
+    step(std::string("reset after a change of ") + p.name);
+    rig.reset();
+    expect_same(c, fresh_run(c, {}), "a fresh block", rig.run({}), std::string("one that was reset after a change of ") + p.name);
     for (const std::uint64_t size : {1u, 7u, 64u, 999u}) {
       step(std::string("change of ") + p.name + ", calls of " + std::to_string(size));
       change.size = size;

@@ -112,7 +112,11 @@ void Net::tell(const std::string& from, const std::string& to, graph::Latency la
 
 tl::expected<plan::Facts, Problems> Net::try_facts() const {
   return plan::establish_facts(phase, [this](int block, const std::vector<StreamFacts>& inputs) {
-    return resolves_[static_cast<std::size_t>(block)](inputs);
+    auto resolution = resolves_[static_cast<std::size_t>(block)](inputs);
+    for (const auto& [end, samples] : more_delay) {
+      if (resolution && end.block == block) resolution->input_flows[static_cast<std::size_t>(end.port)].delay += samples;
+    }
+    return resolution;
   });
 }
 

@@ -3,6 +3,7 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "catch.hpp"
@@ -17,6 +18,8 @@ class Net {
   using Resolve = std::function<tl::expected<Resolution, std::string>(const std::vector<StreamFacts>&)>;
 
   graph::Phase phase;
+  /// Samples of delay that stream inputs have beyond what their blocks say.
+  std::vector<std::pair<graph::End, std::uint64_t>> more_delay;
 
   /// A block with stream inputs, stream outputs, message inputs, message outputs; the line of its place counts from 1.
   int add(const std::string& name, std::vector<std::string> in, std::vector<std::string> out, Resolve resolve,

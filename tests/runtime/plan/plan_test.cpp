@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "net.hpp"
@@ -12,8 +13,8 @@ std::uint64_t step(std::uint64_t& state) {
   return state >> 33;
 }
 
-/// A graph of random wiring over three rates, with loops (each closed through a delay) and messages.
-Net random_net(std::uint64_t seed) {
+/// A graph of random wiring over three rates with small loops, and `feedbacks` connections back from anywhere.
+Net random_net(std::uint64_t seed, int feedbacks = 0) {
   Net net;
   net.phase.run.duration_s = 1.0;
   std::uint64_t state = seed;
@@ -73,6 +74,23 @@ Net random_net(std::uint64_t seed) {
     net.connect(any(rate), name);
     by_rate[out].push_back(name);
   }
+  for (int i = 0; i < feedbacks; ++i) {
+    const std::string name = "f" + std::to_string(i);
+    const std::size_t rate = pick(3);
+    net.sum(name);
+    net.connect(by_rate[rate][pick(by_rate[rate].size())], name + ".in");
+    net.connect(by_rate[rate][pick(by_rate[rate].size())], name + ".feedback");
+    // Somebody reads it instead of what it read before.
+    const int block = net.phase.block_index(name);
+    std::vector<std::size_t> same;
+    for (std::size_t e = 0; e + 2 < net.phase.streams.size(); ++e) {
+      const auto& names = by_rate[rate];
+      const std::string& from = net.phase.blocks[static_cast<std::size_t>(net.phase.streams[e].from.block)].name;
+      if (std::find(names.begin(), names.end(), from) != names.end()) same.push_back(e);
+    }
+    if (!same.empty()) net.phase.streams[same[pick(same.size())]].from = {block, 0};
+    by_rate[rate].push_back(name);
+  }
   for (std::size_t i = 0; i < net.phase.blocks.size(); ++i) net.type(static_cast<int>(i)).in_place = pick(2) == 0;
   return net;
 }
@@ -92,6 +110,35 @@ TEST_CASE("plan: random graphs with loops run in order and in memory of their ow
       }
     }
   }
+}
+
+TEST_CASE("plan: a deadlocked graph runs once it has the delays that the refusal asks for") {
+  int deadlocks = 0, loops = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    INFO("seed " << seed);
+    Net net = random_net(seed, 6);
+    if (!net.try_facts()) continue;  // a loop that nothing drives has no facts
+    auto plan = net.try_plan();
+    if (!plan) {
+      ++deadlocks;
+      for (const Problem& problem : plan.error()) {
+        INFO(to_string(problem));
+        const std::size_t at = problem.text.find("at least ");
+        REQUIRE(at != std::string::npos);
+        const auto edge = std::find_if(net.phase.streams.begin(), net.phase.streams.end(),
+                                       [&](const graph::StreamEdge& e) { return e.place.line == problem.place.line; });
+        net.more_delay.emplace_back(edge->to, std::stoull(problem.text.substr(at + 9)));
+      }
+      // With the samples asked for less one on the last connection, it still cannot start.
+      --net.more_delay.back().second;
+      CHECK_FALSE(net.try_plan());
+      ++net.more_delay.back().second;
+    }
+    const plan::Plan repaired = net.plan();  // checks
+    for (const plan::Step& step : repaired.partitions[0].steps) loops += step.kind == plan::Step::Kind::cluster;
+  }
+  CHECK(deadlocks > 10);
+  CHECK(loops > 100);
 }
 
 TEST_CASE("plan: the same input gives the same plan") {

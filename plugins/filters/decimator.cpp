@@ -18,8 +18,8 @@ double dot(const double* a, const double* b, std::size_t count) {
   return ((partial[0] + partial[4]) + (partial[1] + partial[5])) + ((partial[2] + partial[6]) + (partial[3] + partial[7]));
 }
 
-// Kaiser's formula for the length is good to a few tenths of a dB.
-constexpr double kMarginDb = 1.0;
+// Kaiser's formula for the length is good to about 1 dB.
+constexpr double kMarginDb = 2.0;
 
 }  // namespace
 

@@ -27,7 +27,7 @@ class Decimator {
 
 /// Coefficients of the anti-alias filter of a decimation: linear phase, gain 1 at zero frequency, 2 K factor + 1 taps with K
 /// whole, so that its delay is K output samples. Pass band up to pass_band (0 to 1) of the new Nyquist frequency, stop band from
-/// the new Nyquist frequency on with attenuation_db. Method: Kaiser-windowed sinc, designed with 1 dB to spare. An empty vector
+/// the new Nyquist frequency on with attenuation_db. Method: Kaiser-windowed sinc, designed with 2 dB to spare. An empty vector
 /// for values that allow no design.
 std::vector<double> anti_alias_taps(std::size_t factor, double pass_band, double attenuation_db);
 

@@ -4,30 +4,6 @@
 #include <numbers>
 
 namespace bodeflow::generators {
-namespace {
-
-// (2 pi)^(2k+1) / (2k+1)! with alternating signs: the Taylor series of sin(2 pi x). Up to |x| = 1/4 the first term left out is
-// below 2e-18.
-constexpr int kTerms = 11;
-
-struct Series {
-  double coefficients[kTerms];
-};
-
-constexpr Series make_series() {
-  Series series{};
-  const long double two_pi = 2 * std::numbers::pi_v<long double>;
-  long double term = two_pi;
-  for (int k = 0; k < kTerms; ++k) {
-    series.coefficients[k] = static_cast<double>(term);
-    term *= -two_pi * two_pi / static_cast<long double>((2 * k + 2) * (2 * k + 3));
-  }
-  return series;
-}
-
-constexpr Series kSine = make_series();
-
-}  // namespace
 
 Phase Phase::from_radians(double radians) {
   const double cycles = radians / (2 * std::numbers::pi);
@@ -60,17 +36,6 @@ double Phase::cycles() const {
   const auto upper = static_cast<std::uint64_t>(fraction_ >> 64);
   const auto round = static_cast<std::uint64_t>(fraction_ >> 63) & 1u;
   return static_cast<double>(static_cast<std::int64_t>(upper + round)) * 0x1.0p-64;
-}
-
-double sine_of_cycles(double cycles) {
-  // Into [-1/4, 1/4]; both differences are exact.
-  double x = cycles;
-  x = x > 0.25 ? 0.5 - x : x;
-  x = x < -0.25 ? -0.5 - x : x;
-  const double square = x * x;
-  double sum = kSine.coefficients[kTerms - 1];
-  for (int k = kTerms - 1; k-- > 0;) sum = sum * square + kSine.coefficients[k];
-  return x * sum;
 }
 
 }  // namespace bodeflow::generators

@@ -30,6 +30,21 @@ class Phase {
 };
 
 /// sin(2 pi cycles) for |cycles| <= 0.5, off by less than 4e-16. From portable operations only: the same bits on every machine.
-double sine_of_cycles(double cycles);
+/// Method: Taylor series on a quarter of a turn; without branches, so that loops over it run on vectors.
+inline double sine_of_cycles(double cycles) {
+  // (2 pi)^(2k+1) / (2k+1)! with alternating signs. At |x| = 1/4 the first term left out is below 2e-18.
+  constexpr double kSeries[] = {6.2831853071795864769,    -41.341702240399760234,  81.605249276075054203,
+                                -76.705859753061385842,   42.058693944897653145,   -15.094642576822990391,
+                                3.8199525848482821277,    -0.71812230177850051223, 0.10422916220813983517,
+                                -0.012031585942120627233, 0.0011309237482517961878};
+  // Into [-1/4, 1/4]: the differences are exact.
+  double x = cycles;
+  x = x > 0.25 ? 0.5 - x : x;
+  x = x < -0.25 ? -0.5 - x : x;
+  const double square = x * x;
+  double sum = kSeries[10];
+  for (int k = 10; k-- > 0;) sum = sum * square + kSeries[k];
+  return x * sum;
+}
 
 }  // namespace bodeflow::generators

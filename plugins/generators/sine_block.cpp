@@ -33,10 +33,14 @@ void Sine::resolve(Facts& f) { f.out(out) = source_facts(rate_, unit_); }
 void Sine::activate(const Activation&) { reset(); }
 
 void Sine::process(Io& io) {
-  for (double& y : io.write(out)) {
-    y = wave_.offset + wave_.amplitude * sine_of_cycles(phase_.cycles());
+  // Phases first, in turn; then their sines, all alike.
+  const auto y = io.write(out);
+  for (double& cycles : y) {
+    cycles = phase_.cycles();
     phase_ += step_;
   }
+  const Wave wave = wave_;
+  for (double& value : y) value = wave.offset + wave.amplitude * sine_of_cycles(value);
 }
 
 void Sine::change(const Parameters& p) { take(p); }

@@ -22,16 +22,15 @@ void FileBlock::describe(Describe& d) {
       "in "
       "bounded memory: once to check it whole, once to run. What was found is logged: columns, units, rate, rows, gaps, "
       "clipping.");
-  d.stream_out(out).doc("the columns named by `columns`");
-  d.stream_out(input).doc("the columns named by `input`");
-  d.stream_out(output).doc("the columns named by `output`");
+  d.stream_out(out).doc("the columns named by `columns`; without it all that are read");
+  d.stream_out(input).doc("the columns named by `input`; without it those of `out`");
+  d.stream_out(output).doc("the columns named by `output`; without it those of `out`");
   d.required<File>("file").doc("the data file: .csv, .txt, .tsv or .dat");
   d.optional<double>("rate").unit("Hz").above(0.0).doc(
       "samples per second; needed without a time column, else checked against it");
   d.parameter("time", "check").choices({"check", "ignore"}).doc("`ignore`: `rate` holds whatever the time column says");
   d.parameter("columns", std::vector<std::string>{})
-      .doc(
-          "columns of port `out`, with or without their unit; default: all but time, or none where `input` or `output` is given");
+      .doc("columns of port `out`, with or without their unit; where no column is named at all, every one but time is read");
   d.parameter("input", std::vector<std::string>{}).doc("columns of port `input`: what excites the plant");
   d.parameter("output", std::vector<std::string>{}).doc("columns of port `output`: what the plant answers");
 }
@@ -46,8 +45,13 @@ void FileBlock::configure(const Parameters& p) {
   out_channels_ = select(p.texts("columns"), "columns");
   input_channels_ = select(p.texts("input"), "input");
   output_channels_ = select(p.texts("output"), "output");
-  if (selected_.empty()) out_channels_ = select_all();
+  if (selected_.empty()) select_all();
   if (selected_.empty()) fail(path_ + ": no column beside the time column");
+  if (out_channels_.empty()) {
+    for (std::size_t place = 0; place < selected_.size(); ++place) out_channels_.push_back(place);
+  }
+  if (input_channels_.empty()) input_channels_ = out_channels_;
+  if (output_channels_.empty()) output_channels_ = out_channels_;
   Timing timing;
   if (p.has("rate")) timing.rate_hz = p.number("rate");
   timing.ignore_time_column = p.text("time") == "ignore";
@@ -78,12 +82,10 @@ FileBlock::Channels FileBlock::select(const std::vector<std::string>& names, con
   return channels;
 }
 
-FileBlock::Channels FileBlock::select_all() {
-  Channels channels;
+void FileBlock::select_all() {
   for (std::size_t c = 0; c < reader_->columns().size(); ++c) {
-    if (reader_->time_column() != c) channels.push_back(place_of(c));
+    if (reader_->time_column() != c) place_of(c);
   }
-  return channels;
 }
 
 void FileBlock::report(const Timing& timing) const {
@@ -121,9 +123,7 @@ void FileBlock::resolve(Facts& f) {
   state(output, output_channels_, f);
 }
 
-/// A port without columns keeps unknown facts: connecting it is an error.
 void FileBlock::state(Out<double> port, const Channels& channels, Facts& f) const {
-  if (channels.empty()) return;
   StreamFacts& facts = f.out(port);
   facts.known = true;
   facts.channels = static_cast<int>(channels.size());

@@ -27,7 +27,7 @@ class FileBlock final : public Block {
   using Channels = std::vector<std::size_t>;
 
   Channels select(const std::vector<std::string>& names, const char* parameter);
-  Channels select_all();
+  void select_all();
   std::size_t place_of(std::size_t column);
   void report(const Timing& timing) const;
   void state(Out<double> port, const Channels& channels, Facts& f) const;

@@ -52,8 +52,8 @@ TEST_CASE("file block: input and output ports carry the columns that they name, 
   block.configure();
   const auto facts = block.resolve({});
   REQUIRE(facts.size() == 3);
-  CHECK_FALSE(facts[0].known);
-  CHECK(facts[1].known);
+  CHECK(facts[0].channel_names == std::vector<std::string>{"iq", "theta_load", "theta_motor"});
+  CHECK(facts[0].unit == "");
   CHECK(facts[1].unit == "A");
   CHECK(facts[1].rate == Rate(2500, 1));
   CHECK(facts[1].length == 100);
@@ -93,6 +93,7 @@ TEST_CASE("file block: without named columns, out carries all but time") {
   const auto facts = block.resolve({});
   CHECK(facts[0].channel_names == std::vector<std::string>{"u", "y"});
   CHECK(facts[0].unit == "V");
+  CHECK(facts[1].channel_names == facts[0].channel_names);
   CHECK(facts[0].rate == Rate(10000, 1));
   block.activate(2, Rate(10000, 1));
   CHECK(block.process({}, 2)[0] == test::Channels{{1, 3}, {2, 4}});

@@ -47,10 +47,15 @@ class Flattener {
       return;
     }
     const auto from_command_line = [](const Node& node) { return node.spot.source != nullptr && node.spot.source->command_line; };
-    if (from_command_line(e.value) || from_command_line(*first)) {  // --set by another name of the parameter
-      if (from_command_line(e.value))
-        for (auto& written : out_)
-          if (written.index == index) written.node = first = &e.value;
+    if (from_command_line(e.value)) {  // --set by another name of the parameter
+      first->dropped = true;
+      first = &e.value;
+      for (auto& written : out_)
+        if (written.index == index) written.node = first;
+      return;
+    }
+    if (from_command_line(*first)) {
+      e.value.dropped = true;
       return;
     }
     report_.add(e.spot, fmt::format("{}: parameter '{}' is given twice (first in line {})", owner_,
@@ -130,7 +135,7 @@ void read_blocks(Node& node, const Registry& registry, Phase& phase, Report& rep
     Block block;
     block.name = e.key;
     block.place = e.spot.place();
-    if (require_map(e.value, owner, "a map such as {block: filters.gain, gain: 2}", report)) {
+    if (require_map(e.value, owner, "a map such as {block: filters.gain, gain: 2}", report) && !e.value.broken) {
       block.type = find_type(e.value, e.spot, owner, registry, report);
       if (block.type != nullptr) read_parameters(e.value, e.spot, owner, block, report);
     }

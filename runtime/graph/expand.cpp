@@ -15,14 +15,16 @@ bool is_plain_character(char c) {
 }
 
 /// True when the text may stand without quotes and is read as the same text.
-bool is_plain(const std::string& text) {
+bool is_plain(const std::string& text, bool in_flow) {
   constexpr std::string_view kNothing[] = {"~", "null", "Null", "NULL"};
   if (text.empty() || text.front() == ' ' || text.back() == ' ') return false;
   if (std::find(std::begin(kNothing), std::end(kNothing), text) != std::end(kNothing)) return false;
-  if (!std::all_of(text.begin(), text.end(), is_plain_character)) return false;
+  if (!std::all_of(text.begin(), text.end(), [&](char c) { return is_plain_character(c) || (c == ',' && !in_flow); }))
+    return false;
   if (text.front() == '-' || text.front() == '+')
     return text.size() > 1 && (text[1] == '.' || (text[1] >= '0' && text[1] <= '9'));
-  return std::string_view("<>=%^(").find(text.front()) == std::string_view::npos && text.compare(0, 3, "...") != 0;
+  return std::string_view("<>=%^(").find(text.front()) == std::string_view::npos && text.front() != ',' &&
+         text.compare(0, 3, "...") != 0;
 }
 
 std::string quoted(const std::string& text) {
@@ -55,9 +57,9 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string scalar(const std::string& text) { return is_plain(text) ? text : quoted(escaped(text)); }
+std::string scalar(const std::string& text, bool in_flow) { return is_plain(text, in_flow) ? text : quoted(escaped(text)); }
 
-std::string key(const std::string& text) { return is_plain(text) ? text : quoted(text); }
+std::string key(const std::string& text) { return is_plain(text, true) ? text : quoted(text); }
 
 void flow(const Node& node, std::string& out) {
   bool first = true;
@@ -70,7 +72,7 @@ void flow(const Node& node, std::string& out) {
       out += "null";
       return;
     case Node::Kind::scalar:
-      out += scalar(node.text);
+      out += scalar(node.text, true);
       return;
     case Node::Kind::list:
       out += '[';
@@ -83,6 +85,7 @@ void flow(const Node& node, std::string& out) {
     case Node::Kind::map:
       out += '{';
       for (const auto& e : node.entries) {
+        if (e.value.dropped) continue;
         comma();
         out += key(e.key) + ": ";
         flow(e.value, out);
@@ -97,6 +100,7 @@ class Writer {
  public:
   void map(const Node& node, std::size_t indent, bool first_line_begun) {
     for (const auto& e : node.entries) {
+      if (e.value.dropped) continue;
       if (!first_line_begun) out_.append(indent, ' ');
       first_line_begun = false;
       out_ += key(e.key) + ":";
@@ -108,10 +112,13 @@ class Writer {
 
  private:
   void value(const Node& node, std::size_t indent, bool in_list) {
-    const bool empty = (node.is_list() && node.items.empty()) || (node.is_map() && node.entries.empty());
+    const bool empty =
+        (node.is_list() && node.items.empty()) ||
+        (node.is_map() && std::all_of(node.entries.begin(), node.entries.end(), [](const Entry& e) { return e.value.dropped; }));
     if (node.is_scalar() || node.is_none() || empty || node.flow) {
       std::string line;
-      flow(node, line);
+      if (node.is_scalar()) line = scalar(node.text, false);
+      if (!node.is_scalar()) flow(node, line);
       if (node.is_scalar() || node.is_none() || empty || line.size() + indent <= kLongestLine) {
         out_ += " " + line + "\n";
         return;

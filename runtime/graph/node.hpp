@@ -35,9 +35,10 @@ struct Node {
 
   Kind kind = Kind::none;
   bool quoted = false;
-  bool flow = false;    ///< written with [] or {}
-  bool exact = false;   ///< the text stands in the file as it is here: columns inside it can be told
-  bool broken = false;  ///< a problem was reported already: readers keep silent
+  bool flow = false;     ///< written with [] or {}
+  bool exact = false;    ///< the text stands in the file as it is here: columns inside it can be told
+  bool broken = false;   ///< a problem was reported already: readers keep silent
+  bool dropped = false;  ///< another entry took its place (--set by an alias): not part of the expanded text
   Spot spot;
   const Source* origin = nullptr;  ///< what a relative path in the text is relative to
   std::string text;

@@ -45,6 +45,26 @@ class Lines {
     return rest.substr(0, rest.find('\n'));
   }
 
+  /// True for a text in quotes that end before the file does. yaml-cpp takes the end of the file for the closing quote.
+  bool closes(const YAML::Mark& mark) const {
+    std::size_t i = offset(mark);
+    while (i < text_.size() && (text_[i] == '&' || text_[i] == '!')) {  // anchor and tag stand before the quote
+      i = std::min(text_.find_first_of(" \t\r\n", i), text_.size());
+      i = std::min(text_.find_first_not_of(" \t\r\n", i), text_.size());
+    }
+    if (i >= text_.size() || (text_[i] != '"' && text_[i] != '\'')) return true;
+    const char quote = text_[i];
+    for (++i; i < text_.size(); ++i) {
+      if (quote == '"' && text_[i] == '\\') {
+        ++i;
+      } else if (text_[i] == quote) {
+        if (quote == '"' || i + 1 >= text_.size() || text_[i + 1] != quote) return true;
+        ++i;
+      }
+    }
+    return false;
+  }
+
   bool has_at(const YAML::Mark& mark, std::string_view text) const { return text_.substr(offset(mark), text.size()) == text; }
 
  private:
@@ -79,6 +99,10 @@ class Builder final : public YAML::EventHandler {
     node.text = value;
     node.quoted = tag != "?";
     node.exact = lines_.has_at(mark, value);
+    if (node.quoted && !lines_.closes(mark)) {
+      report_.add(node.spot, "not valid YAML: the closing quote is missing");
+      throw Stop{};
+    }
     if (value.find('\0') != std::string::npos) {
       report_.add(node.spot, "a NUL character in a text");
       node.broken = true;
@@ -202,6 +226,7 @@ class Builder final : public YAML::EventHandler {
     }
     if (key.text == "<<" && !key.quoted) {
       report_.add(key.spot, "merge key '<<' is not supported: use 'variables' or 'include'");
+      map.node.broken = true;
       return;
     }
     const auto [first, is_new] = map.lines.try_emplace(key.text, key.spot.line);
@@ -209,6 +234,7 @@ class Builder final : public YAML::EventHandler {
       report_.add(key.spot, fmt::format("key {} stands here twice (first in line {})", quote(key.text), first->second));
       return;
     }
+    if (value.is_none()) value.spot = key.spot;
     map.node.entries.push_back({key.text, key.spot, std::move(value)});
   }
 
@@ -236,6 +262,7 @@ std::string explain(const std::string& message) {
       {YAML::ErrorMsg::BLOCK_ENTRY, "'- ' where no list can be (wrong indentation)"},
       {YAML::ErrorMsg::FLOW_END, "']' or '}' without its beginning"},
       {YAML::ErrorMsg::TAB_IN_INDENTATION, "a tab in the indentation: use spaces"},
+      {YAML::ErrorMsg::UNKNOWN_ANCHOR, "an alias for a value that is not there"},
       {YAML::ErrorMsg::UNKNOWN_TOKEN, "a character that begins no value: put the text in quotes"}};
   const auto found = kWords.find(message);
   return found == kWords.end() ? message : found->second;

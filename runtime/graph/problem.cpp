@@ -72,7 +72,7 @@ std::string did_you_mean(const std::string& found, const std::vector<std::string
     const auto dot = candidate.rfind('.');
     if (dot != std::string::npos && found.find('.') == std::string::npos)  // `sine` for `generators.sine`
       d = std::min(d, distance(found, candidate.substr(dot + 1)) + 1);
-    if (d < least) {
+    if (d < least && d < found.size()) {
       least = d;
       nearest = &candidate;
     }

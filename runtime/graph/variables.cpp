@@ -136,13 +136,13 @@ void Variables::substitute_text(Node& node) {
     const Node* value = use(name, node.spot);
     if (value != nullptr && !value->is_scalar())
       report_.add(node.spot, fmt::format("variable '{}' is {}: it can't stand inside a text", name, what(*value)));
+    at = end + 1;
     if (value == nullptr || !value->is_scalar() || !grow(0, value->text.size(), node.spot)) {
       node.broken = true;
-      return;
+      continue;
     }
     if (node.text.empty()) node.origin = value->origin;  // of a path, the folder comes first
     node.text += value->text;
-    at = end + 1;
   }
 }
 

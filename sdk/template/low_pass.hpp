@@ -1,7 +1,5 @@
 #pragma once
 
-namespace @NAME@ {
-
 /// First-order low pass, the exact discretisation of 1 / (1 + s / (2 pi f_c)) for inputs held constant between samples:
 /// y[n] = y[n-1] + a (x[n] - y[n-1]) with a = 1 - exp(-2 pi f_c / f_s). It knows no ports, clocks or logs: a test calls it.
 class LowPass {
@@ -24,5 +22,3 @@ class LowPass {
   double a_ = 0.0;
   double y_ = 0.0;
 };
-
-}  // namespace @NAME@

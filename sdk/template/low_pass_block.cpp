@@ -1,7 +1,5 @@
 #include "low_pass_block.hpp"
 
-namespace @NAME@ {
-
 void LowPassBlock::describe(bodeflow::Describe& d) {
   d.id("@NAME@.low_pass").summary("Filters each channel with a first-order low pass.").realtime_safe().in_place().cost_ns(3);
   d.stream_in(in).doc("any number of channels");
@@ -34,5 +32,3 @@ void LowPassBlock::process(bodeflow::Io& io) {
 void LowPassBlock::reset() {
   for (LowPass& filter : filters_) filter.reset();
 }
-
-}  // namespace @NAME@

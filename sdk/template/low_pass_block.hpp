@@ -1,12 +1,9 @@
 #pragma once
 
-#include "low_pass.hpp"
-
 #include <bodeflow/block.hpp>
-
 #include <vector>
 
-namespace @NAME@ {
+#include "low_pass.hpp"
 
 /// Moves samples between the ports and one LowPass a channel.
 class LowPassBlock final : public bodeflow::Block {
@@ -27,5 +24,3 @@ class LowPassBlock final : public bodeflow::Block {
   int channels_ = 0;
   std::vector<LowPass> filters_;
 };
-
-}  // namespace @NAME@

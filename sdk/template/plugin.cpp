@@ -1,4 +1,4 @@
 #include "low_pass_block.hpp"
 
 // The plugin's name and version, and its blocks.
-BODEFLOW_PLUGIN("@NAME@", "0.1.0", @NAME@::LowPassBlock)
+BODEFLOW_PLUGIN("@NAME@", "0.1.0", LowPassBlock)

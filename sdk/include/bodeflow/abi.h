@@ -44,17 +44,17 @@ typedef struct bf_rate {
 
 /* Types of parameters. */
 enum {
-  BF_BOOL = 1,         /* integer: 0 or 1 */
-  BF_INTEGER = 2,      /* integer */
-  BF_NUMBER = 3,       /* numbers[0], in the parameter's unit */
-  BF_STRING = 4,       /* strings[0] */
-  BF_CHOICE = 5,       /* strings[0], one of the choices */
-  BF_FILE = 6,         /* strings[0], an absolute path: the host resolves it against the graph file */
-  BF_NUMBERS = 7,      /* numbers[0 .. rows), in the parameter's unit */
-  BF_INTEGERS = 8,     /* integers[0 .. rows) */
-  BF_STRINGS = 9,      /* strings[0 .. rows) */
+  BF_BOOL = 1,          /* integer: 0 or 1 */
+  BF_INTEGER = 2,       /* integer */
+  BF_NUMBER = 3,        /* numbers[0], in the parameter's unit */
+  BF_STRING = 4,        /* strings[0] */
+  BF_CHOICE = 5,        /* strings[0], one of the choices */
+  BF_FILE = 6,          /* strings[0], an absolute path: the host resolves it against the graph file */
+  BF_NUMBERS = 7,       /* numbers[0 .. rows), in the parameter's unit */
+  BF_INTEGERS = 8,      /* integers[0 .. rows) */
+  BF_STRINGS = 9,       /* strings[0 .. rows) */
   BF_COMPLEX_LIST = 10, /* numbers[0 .. 2 rows): re, im, re, im ... */
-  BF_MATRIX = 11       /* numbers[0 .. rows * columns), row-major */
+  BF_MATRIX = 11        /* numbers[0 .. rows * columns), row-major */
 };
 
 typedef struct bf_parameter_value {
@@ -77,10 +77,10 @@ enum { BF_PORT_OPTIONAL = 1 /* an input that may stay unconnected */ };
 
 typedef struct bf_port_descriptor {
   uint32_t struct_size;
-  uint32_t kind;           /* BF_STREAM or BF_MESSAGE */
-  uint32_t direction;      /* BF_IN or BF_OUT */
+  uint32_t kind;      /* BF_STREAM or BF_MESSAGE */
+  uint32_t direction; /* BF_IN or BF_OUT */
   uint32_t flags;
-  uint32_t element;        /* streams: BF_F64, BF_C64, BF_ANY */
+  uint32_t element; /* streams: BF_F64, BF_C64, BF_ANY */
   const char* name;
   const char* record_type; /* messages: the type carried, or NULL for any */
   const char* doc;
@@ -88,7 +88,7 @@ typedef struct bf_port_descriptor {
 
 enum {
   BF_PARAMETER_REQUIRED = 1,
-  BF_PARAMETER_LIVE = 2,        /* may change while running, through bf_block.change */
+  BF_PARAMETER_LIVE = 2,          /* may change while running, through bf_block.change */
   BF_PARAMETER_EXCLUSIVE_MIN = 4, /* the range does not include its minimum */
   BF_PARAMETER_EXCLUSIVE_MAX = 8
 };
@@ -98,8 +98,8 @@ typedef struct bf_parameter_descriptor {
   uint32_t type;
   uint32_t flags;
   uint32_t choice_count;
-  const char* name;            /* a dot groups: `lines.first` is written `lines: {first: ...}` */
-  const char* unit;            /* of BF_NUMBER and BF_NUMBERS: "Hz", "s", "V", "1" (dimensionless), "" (any) */
+  const char* name; /* a dot groups: `lines.first` is written `lines: {first: ...}` */
+  const char* unit; /* of BF_NUMBER and BF_NUMBERS: "Hz", "s", "V", "1" (dimensionless), "" (any) */
   const char* doc;
   const char* const* choices;
   const char* aliases;         /* earlier names, separated by spaces, or NULL */
@@ -125,7 +125,8 @@ typedef struct bf_block_descriptor {
   const char* references; /* author, title, year, DOI; one a line; may be empty */
   const char* roles;      /* words separated by spaces, e.g. "source", "identifier"; may be empty */
   double cost_ns;         /* typical cost of one firing in nanoseconds: the planner partitions by it */
-  const bf_port_descriptor* const* ports; /* stream inputs, stream outputs, message inputs and message outputs each count from 0 */
+  /* Stream inputs, stream outputs, message inputs and message outputs each count from 0. */
+  const bf_port_descriptor* const* ports;
   const bf_parameter_descriptor* const* parameters;
 } bf_block_descriptor;
 
@@ -138,11 +139,11 @@ typedef struct bf_stream_facts {
   uint32_t element;
   uint32_t channels;
   bf_rate rate;
-  int64_t length;                    /* samples until the end of the stream; -1: it has no end of its own */
-  const char* unit;                  /* "" where unknown or where channels differ */
-  const char* clock;                 /* clock domain; "" is the engine's own */
-  const char* const* channel_names;  /* NULL or `channels` names */
-  const char* const* channel_units;  /* NULL or `channels` units */
+  int64_t length;                   /* samples until the end of the stream; -1: it has no end of its own */
+  const char* unit;                 /* "" where unknown or where channels differ */
+  const char* clock;                /* clock domain; "" is the engine's own */
+  const char* const* channel_names; /* NULL or `channels` names */
+  const char* const* channel_units; /* NULL or `channels` units */
 } bf_stream_facts;
 
 /* How a stream port moves data. A block fires a whole number of times; a firing takes `samples` of each input and gives
@@ -157,8 +158,8 @@ typedef struct bf_flow {
 
 typedef struct bf_resolution {
   uint32_t struct_size;
-  uint32_t input_count;  /* stream inputs */
-  uint32_t output_count; /* stream outputs */
+  uint32_t input_count;          /* stream inputs */
+  uint32_t output_count;         /* stream outputs */
   const bf_stream_facts* inputs; /* from the host; known = 0 too for an unconnected optional input */
   bf_stream_facts* outputs;      /* to be filled; strings stay valid until the next resolve or destroy */
   bf_flow* input_flows;          /* preset to {1, 0, NULL} */
@@ -214,10 +215,10 @@ typedef struct bf_files {
 
 typedef struct bf_activation {
   uint32_t struct_size;
-  uint32_t realtime;  /* 1: the clock does not wait */
-  uint64_t max_count; /* most firings in one process call */
-  uint64_t seed;      /* of this block: derived from the run's seed and the block's name */
-  bf_rate rate;       /* firings per second; num = 0 for a block without streams */
+  uint32_t realtime;     /* 1: the clock does not wait */
+  uint64_t max_count;    /* most firings in one process call */
+  uint64_t seed;         /* of this block: derived from the run's seed and the block's name */
+  bf_rate rate;          /* firings per second; num = 0 for a block without streams */
   uint32_t vector_level; /* widest vector unit that kernels may use: x86-64 level 1 (SSE2), 3 (AVX2), 4 (AVX-512) */
   uint32_t reserved;
 } bf_activation;
@@ -232,22 +233,22 @@ typedef struct bf_stream {
 } bf_stream;
 
 typedef struct bf_message {
-  uint32_t port;   /* index among the block's message inputs */
+  uint32_t port; /* index among the block's message inputs */
   uint32_t reserved;
-  double time;     /* seconds, when the record was made by its producer's clock */
+  double time; /* seconds, when the record was made by its producer's clock */
   const bf_record* record;
 } bf_message;
 
 typedef struct bf_process {
   uint32_t struct_size;
-  uint32_t message_count;      /* records that take effect before the first firing of this call */
-  const bf_message* messages;  /* in order of effect */
-  const bf_stream* inputs;     /* stream inputs */
-  const bf_stream* outputs;    /* stream outputs */
-  uint64_t position;           /* index of the first firing of this call */
-  uint64_t count;              /* firings in this call; 0: only messages, or finish */
-  uint64_t done;               /* out, preset to count: a source that ends sets the firings that it made */
-  void* context;               /* the host's */
+  uint32_t message_count;     /* records that take effect before the first firing of this call */
+  const bf_message* messages; /* in order of effect */
+  const bf_stream* inputs;    /* stream inputs */
+  const bf_stream* outputs;   /* stream outputs */
+  uint64_t position;          /* index of the first firing of this call */
+  uint64_t count;             /* firings in this call; 0: only messages, or finish */
+  uint64_t done;              /* out, preset to count: a source that ends sets the firings that it made */
+  void* context;              /* the host's */
   /* [process] Sends a record, `offset` firings after `position` (0..count). Ownership of one count goes to the host. */
   void (*emit)(struct bf_process* process, uint32_t port, bf_record* record, uint64_t offset);
 } bf_process;
@@ -286,7 +287,7 @@ typedef struct bf_block {
 typedef struct bf_factory {
   uint32_t struct_size;
   uint32_t reserved;
-  const char* kind;       /* "block" */
+  const char* kind; /* "block" */
   const char* id;
   const void* descriptor; /* kind "block": const bf_block_descriptor* */
   /* [control] Fills `made` (kind "block": bf_block*). `host` outlives what is made. */

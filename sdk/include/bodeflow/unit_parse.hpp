@@ -156,6 +156,8 @@ class UnitParser {
     if (at_ >= text_.size() || text_[at_] < '0' || text_[at_] > '9')
       fail("unit '" + std::string(text_) + "': exponent is missing");
     int twice = 2 * (text_[at_++] - '0');
+    if (at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9')
+      fail("unit '" + std::string(text_) + "': exponent is above 9");
     if (accept(".5")) ++twice;
     if (bracket && !accept(")")) fail("unit '" + std::string(text_) + "': ')' is missing");
     return negative ? -twice : twice;

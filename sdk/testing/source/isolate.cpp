@@ -63,7 +63,8 @@ void limit_memory() {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   limit_memory();
-  std::signal(SIGALRM, SIG_DFL);
+  for (const int signal : {SIGALRM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM})
+    std::signal(signal, SIG_DFL);  // not the caller's
   alarm(timeout_s);
   const Verdict verdict = judge_here(work, [pipe](const std::string& what) { send(pipe, 's', what); });
   send(pipe, 'v', std::string(1, static_cast<char>('0' + static_cast<int>(verdict.status))) + verdict.reason);

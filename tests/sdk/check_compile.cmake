@@ -1,0 +1,18 @@
+# cmake -DCOMPILER=... -DFLAGS=... -DSOURCE=... -P check_compile.cmake: fails unless the compiler takes the source without a
+# warning; prints "skipped" where the compiler or its library is absent.
+find_program(compiler ${COMPILER})
+if(NOT compiler)
+  message("skipped: ${COMPILER} is not installed")
+  return()
+endif()
+separate_arguments(flags UNIX_COMMAND "${FLAGS}")
+file(WRITE ${WORK}.probe.cpp "#include <vector>\nint main() { return static_cast<int>(std::vector<int>().size()); }\n")
+execute_process(COMMAND ${compiler} ${flags} -fsyntax-only ${WORK}.probe.cpp RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
+if(NOT result EQUAL 0)
+  message("skipped: ${COMPILER} ${FLAGS} can't compile an empty program")
+  return()
+endif()
+execute_process(COMMAND ${compiler} ${flags} -Wall -Wextra -Wconversion -Wshadow -Werror -fsyntax-only ${SOURCE} RESULT_VARIABLE result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "${COMPILER} ${FLAGS} refuses ${SOURCE}")
+endif()

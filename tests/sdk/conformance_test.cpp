@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <bodeflow/testing/conformance.hpp>
+
+#include "catch.hpp"
+
+using namespace bodeflow::testing;
+
+namespace {
+
+Options only(const std::string& block) {
+  Options options;
+  options.block = block;
+  return options;
+}
+
+/// The reason of the first failure of that check, "passes" or "not made".
+std::string finding(const Report& report, const std::string& name) {
+  std::string found = "not made";
+  for (const Check& c : report.checks) {
+    if (c.name != name) continue;
+    if (c.status == Status::fail) return c.reason;
+    found = c.status == Status::pass ? "passes" : "skipped: " + c.reason;
+  }
+  return found;
+}
+
+bool begins(const std::string& text, const std::string& with) { return text.rfind(with, 0) == 0; }
+
+constexpr const char* kBits = "gives the same bits and records for every size and boundary of calls";
+constexpr const char* kReset = "is as fresh after reset";
+constexpr const char* kRealtime = "neither allocates, locks nor does input or output in process, as it claims";
+constexpr const char* kMemory = "writes every sample of its outputs and nothing else";
+
+}  // namespace
+
+TEST_CASE("a plugin that keeps the contract passes every check") {
+  Options options;
+  options.settings = *parse_settings("good.mean: length = 10\ngood.mean: length = 333  # longer than a call\n");
+  const Report report = check_plugin(BODEFLOW_GOOD_PLUGIN, options);
+  INFO(to_text(report));
+  CHECK(report.passed());
+  CHECK(report.count(Status::skip) == 0);
+  CHECK(finding(report, kRealtime) == "passes");
+  CHECK(finding(report, "works in place as it claims") == "passes");
+  CHECK(finding(report, "survives records without content") == "passes");
+  CHECK(std::any_of(report.checks.begin(), report.checks.end(), [](const Check& c) { return c.setting == "@element = c64"; }));
+}
+
+TEST_CASE("a block that can't be configured is skipped with the reason") {
+  const Report report = check_plugin(BODEFLOW_GOOD_PLUGIN, only("good.mean"));
+  CHECK(finding(report, "can be set up") == "skipped: parameter 'length' is required: give a setting");
+  CHECK(report.count(Status::fail) == 0);
+}
+
+TEST_CASE("a setting that does not fit is a failure of the setting") {
+  Options options = only("good.mean");
+  options.settings = *parse_settings("good.mean: lenght = 10\n");
+  CHECK(finding(check_plugin(BODEFLOW_GOOD_PLUGIN, options), "can be set up") == "unknown parameter 'lenght'");
+  options.settings = *parse_settings("good.mean: length = ten\n");
+  CHECK(finding(check_plugin(BODEFLOW_GOOD_PLUGIN, options), "can be set up") == "parameter 'length': 'ten' is not a number");
+}
+
+TEST_CASE("each breach of the contract is found by its check") {
+  const auto of = [](const char* block, const char* name) {
+    return finding(check_plugin(BODEFLOW_BAD_PLUGIN, only(block)), name);
+  };
+  CHECK(begins(of("bad.chunk_mean", kBits), "output 'out', channel 0, value 0 is "));
+  CHECK(begins(of("bad.no_reset", kReset), "output 'out', channel 0, value 0 is "));
+  CHECK(begins(of("bad.shared", "gives the same bits in a second instance"), "output 'out', channel 0, value 0 is "));
+  CHECK(begins(of("bad.gaps", kMemory),
+               "leaves samples of an output unwritten, or reads them: output 'out', channel 0, value 100 is 0 with "));
+  CHECK(begins(of("bad.beyond", kMemory), "writes outside of output 'out', channel 0"));
+  CHECK(of("bad.scribbler", kMemory) == "changes samples of an input");
+  CHECK(begins(of("bad.in_place", "works in place as it claims"), "output 'out', channel 0, value 1 is "));
+  CHECK(of("bad.impure_resolve", "resolve is pure and copes with inputs that are not known yet") ==
+        "gives other facts when asked again");
+  CHECK(of("bad.eager_resolve", "resolve is pure and copes with inputs that are not known yet") ==
+        "resolve fails: the input has no rate");
+  CHECK(of("bad.late_record", kBits) ==
+        "record 0 on 'note' is sent at firing 1000 with calls of 1000, at 501 with calls of 1 (give emit the offset)");
+  CHECK(
+      begins(of("bad.crashes_on_nan", "survives NaN, infinite, denormal and huge samples"), "crashes: Segmentation fault (NaN"));
+  CHECK(begins(of("bad.stuck_on_nan", "survives NaN, infinite, denormal and huge samples"),
+               "output 'out', channel 0, value 0 is "));
+  CHECK(of("bad.wild_parameter", "takes or refuses extreme values of parameter 'length'") == "crashes: Aborted (-1)");
+  CHECK(begins(of("bad.exits", "passes through its life cycle in order"), "ends the process with exit code 3"));
+  CHECK(begins(of("bad.live_jump", "gives the same bits for every cut when a live parameter changes"),
+               "output 'out', channel 0, value 10"));
+  CHECK(begins(of("bad.unknown_unit", "has a sound descriptor"), "parameter 'speed': unit 'furlong/fortnight' is unknown"));
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_CASE("a false claim of real-time safety is found, with the function that was called") {
+  const auto of = [](const char* block) { return finding(check_plugin(BODEFLOW_BAD_PLUGIN, only(block)), kRealtime); };
+  CHECK(begins(of("bad.allocates"), "process calls malloc at firing 0 "));
+  CHECK(begins(of("bad.locks"), "process calls pthread_mutex_lock at firing 0 "));
+  CHECK(begins(of("bad.prints"), "process calls fflush at firing 0 "));
+}
+#endif
+
+TEST_CASE("a file that is no plugin is refused with the reason") {
+  const Report none = check_plugin("/no/such/file.so");
+  CHECK(finding(none, "has an ELF note that tells what it is") == "/no/such/file.so: can't be read");
+  const Report text = check_plugin(std::string(BODEFLOW_SOURCE_DIR) + "/CMakeLists.txt");
+  CHECK(finding(text, "has an ELF note that tells what it is") == "is no 64-bit ELF file");
+  const Report foreign = check_plugin("/proc/self/exe");
+  CHECK(finding(foreign, "has an ELF note that tells what it is") == "has no ELF note 'bodeflow'");
+  CHECK_FALSE(none.passed());
+}
+
+TEST_CASE("the settings file is read, with the line of what can't be") {
+  const auto settings =
+      parse_settings("# comment\n\nfamily.block: gain = 2.5, list = [1, 2], text = \"a, b # c\"  # why\nfamily.block:\n");
+  REQUIRE(settings);
+  REQUIRE(settings->at("family.block").size() == 2);
+  CHECK(settings->at("family.block")[0] == Setting{{"gain", "2.5"}, {"list", "[1, 2]"}, {"text", "\"a, b # c\""}});
+  CHECK(settings->at("family.block")[1].empty());
+  CHECK(parse_settings("\nfamily.block gain").error().text == "2: no ':' behind the block's id");
+  CHECK(parse_settings("a.b: gain").error().text == "1: 'gain' has not the form name = value");
+  CHECK(parse_settings("a.b: x = [1, 2").error().text == "1: '[' is not closed");
+  CHECK(read_settings("/no/such/file").error().text == "/no/such/file: can't be read");
+}

@@ -113,8 +113,8 @@ struct DataFile::State {
 
   void open() {
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "can't set up HDF5");
-    h5::check(H5Pset_file_locking(access.id(), true, true), "can't set up HDF5");
-    // the reader's part of single-writer-multiple-reader mode: the writer may be at work, or may have been killed
+    h5::check(H5Pset_file_locking(access.id(), false, true), "can't set up HDF5");
+    // The reader's part of single-writer-multiple-reader mode: the writer may be at work, or may have been killed
     file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id()), H5Fclose, "can't open it");
   }
 

@@ -6,6 +6,7 @@
 #include <bodeflow/record.hpp>
 
 #include "record/disk_space.hpp"
+#include "record/hdf5_deferred.hpp"
 #include "record/hdf5_records.hpp"
 
 namespace bodeflow::record {
@@ -43,20 +44,13 @@ std::string level_of(const Origin& origin) {
   return origin.repeat > 0 ? fmt::format("{}@{}", origin.phase, origin.repeat + 1) : origin.phase;
 }
 
-/// Access for appending (metadata in an order that readers can follow), or for adding objects (metadata at the close only).
+/// Access for appending (metadata in an order that readers can follow), or for adding objects (old bytes change at the close).
+/// Without file locks: a reader must not be able to stop a run.
 Handle file_access(bool appending) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "can't set up HDF5");
   h5::check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "can't set up HDF5");
-  h5::check(H5Pset_file_locking(access.id(), true, true), "can't set up HDF5");
-  if (appending) return access;
-  H5AC_cache_config_t cache;
-  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
-  h5::check(H5Pget_mdc_config(access.id(), &cache), "can't set up HDF5");
-  cache.evictions_enabled = false;
-  cache.incr_mode = H5C_incr__off;
-  cache.flash_incr_mode = H5C_flash_incr__off;
-  cache.decr_mode = H5C_decr__off;
-  h5::check(H5Pset_mdc_config(access.id(), &cache), "can't set up HDF5");
+  h5::check(H5Pset_file_locking(access.id(), false, true), "can't set up HDF5");
+  if (!appending) h5::set_deferred_driver(access.id());
   return access;
 }
 
@@ -248,12 +242,16 @@ tl::expected<std::unique_ptr<DataWriter>, std::string> DataWriter::create(const 
   writer->state_ = std::make_unique<State>(path);
   State& state = *writer->state_;
   const auto made = state.guarded([&] {
+    if (std::filesystem::exists(path)) throw std::runtime_error("it exists already");
+    std::filesystem::path unfinished = path;  // so that the file is whole from its first moment
+    unfinished += ".new";
     const Handle access = file_access(false);
-    state.file = Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access.id()), H5Fclose, "can't create it");
+    state.file = Handle(H5Fcreate(unfinished.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose, "can't create it");
     h5::put(state.file.id(), "bodeflow", std::int64_t{1});
     h5::group(state.file.id(), "streams");
     h5::group(state.file.id(), "records");
     state.close();
+    std::filesystem::rename(unfinished, path);
   });
   if (!made) return tl::unexpected(made.error());
   return writer;

@@ -36,8 +36,8 @@ struct TimedRecord {
 /// Writes data.h5: /streams/[phase/]block.port (samples x channels) and /records/[phase/]block.port/{bytes, index}.
 ///
 /// While a phase runs the file is in HDF5's single-writer-multiple-reader mode: after each `flush` it is whole for readers,
-/// and stays so when the process is killed. Between phases it is opened in the ordinary way to add datasets; its metadata
-/// is written only as it closes then, to keep that window short. One thread at a time.
+/// and stays so when the process is killed. Between phases datasets are added in a way that keeps the old file until the
+/// end (see set_deferred_driver). One thread at a time.
 class DataWriter {
  public:
   /// How many records of a port, and how many bytes of them, are also written as groups with one dataset an array.

@@ -142,6 +142,15 @@ struct Registry::State {
   std::vector<std::unique_ptr<Library>> libraries;  // as plugins; null until first used
   std::map<std::string, Place> blocks;
 
+  void take(std::vector<PluginDescription> found) {
+    plugins = std::move(found);
+    libraries.resize(plugins.size());
+    for (std::size_t i = 0; i < plugins.size(); ++i) {
+      if (plugins[i].refused.empty()) enter(i);
+    }
+  }
+
+ private:
   /// Enters a plugin's blocks; refuses it when an earlier one gives any of them.
   void enter(std::size_t index) {
     PluginDescription& plugin = plugins[index];
@@ -155,21 +164,11 @@ struct Registry::State {
   }
 };
 
-Registry::Registry(Options options) : state_(std::make_shared<State>()) {
-  state_->plugins = find_plugins(options);
-  state_->libraries.resize(state_->plugins.size());
-  for (std::size_t i = 0; i < state_->plugins.size(); ++i) {
-    if (state_->plugins[i].refused.empty()) state_->enter(i);
-  }
-}
+Registry::Registry(Options options) : state_(std::make_shared<State>()) { state_->take(find_plugins(options)); }
 
 Registry Registry::with(std::vector<PluginDescription> plugins) {
   Registry registry{Options{}};
-  registry.state_->plugins = std::move(plugins);
-  registry.state_->libraries.resize(registry.state_->plugins.size());
-  for (std::size_t i = 0; i < registry.state_->plugins.size(); ++i) {
-    if (registry.state_->plugins[i].refused.empty()) registry.state_->enter(i);
-  }
+  registry.state_->take(std::move(plugins));
   return registry;
 }
 

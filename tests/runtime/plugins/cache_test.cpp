@@ -69,7 +69,7 @@ TEST_CASE("the description from the cache equals the probed one") {
   }
 }
 
-TEST_CASE("a plugin that was only touched is hashed, not probed; one with other bytes is probed") {
+TEST_CASE("a plugin that was only touched is hashed, not probed, one with other bytes is probed") {
   Lab lab;
   CHECK(lab.probes() == 2);
   const auto time = std::filesystem::last_write_time(lab.plugin("good"));

@@ -22,7 +22,7 @@ TEST_CASE("the host's services are found by id, others are not there") {
   CHECK(c.extension(&c, nullptr) == nullptr);
 }
 
-TEST_CASE("an output path lives as long as the block; a refused one gives the reason; a check has an empty one") {
+TEST_CASE("an output path lives as long as the block, a refused one gives the reason, a check has an empty one") {
   auto services = std::make_shared<HostServices>();
   services->output_path = [](const std::string& block, const std::string& name) -> tl::expected<std::string, std::string> {
     if (name == "../x") return tl::unexpected(block + ": '../x' leaves the run directory");

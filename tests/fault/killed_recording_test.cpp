@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <sstream>
+#include <thread>
 
 #include "../runtime/record/python.hpp"
 #include "../runtime/record/recording_fixture.hpp"
@@ -26,8 +27,9 @@ struct Killed {
   std::vector<Taken> taken;  ///< what the process told, in order
 };
 
-/// Starts record_paced in `folder` and kills it once it has told of `ticks` steps of 10 ms.
-Killed kill_while_recording(const fs::path& folder, std::size_t ticks) {
+/// Starts record_paced in `folder` and kills it some time after it has told of its work `lines_before` times.
+Killed kill_while_recording(const fs::path& folder, const char* mode, std::size_t lines_before,
+                            std::chrono::microseconds wait = std::chrono::microseconds(0)) {
   int ends[2];
   REQUIRE(::pipe(ends) == 0);
   const pid_t child = ::fork();
@@ -35,7 +37,7 @@ Killed kill_while_recording(const fs::path& folder, std::size_t ticks) {
   if (child == 0) {
     ::dup2(ends[1], STDOUT_FILENO);
     ::close(ends[0]);
-    ::execl(BODEFLOW_BUILD_DIR "/bin/record_paced", "record_paced", folder.c_str(), nullptr);
+    ::execl(BODEFLOW_BUILD_DIR "/bin/record_paced", "record_paced", folder.c_str(), mode, nullptr);
     ::_exit(127);
   }
   ::close(ends[1]);
@@ -46,7 +48,8 @@ Killed kill_while_recording(const fs::path& folder, std::size_t ticks) {
     Taken taken;
     std::istringstream(line) >> taken.time_ns >> taken.samples >> taken.records;
     killed.taken.push_back(taken);
-    if (killed.taken.size() == ticks) {
+    if (killed.taken.size() == lines_before) {
+      std::this_thread::sleep_for(wait);
       killed.time_ns = std::chrono::steady_clock::now().time_since_epoch().count();
       ::kill(child, SIGKILL);
     }
@@ -59,11 +62,32 @@ Killed kill_while_recording(const fs::path& folder, std::size_t ticks) {
   return killed;
 }
 
+/// Kills a process that does nothing but begin and end phases, at many different moments: every phase that ended is there.
+void kill_between_phases(int times) {
+  for (int i = 0; i < times; ++i) {
+    const TemporaryFolder folder;
+    const auto wait = std::chrono::microseconds(i * 7919 % 20'000);
+    const std::uint64_t ended = kill_while_recording(folder.path(), "phases", 2, wait).taken.back().samples;
+    const auto file = record::DataFile::open(folder.path() / "run" / "data.h5");
+    INFO((file ? std::string() : file.error()) << ", killed after " << wait.count() << " us");
+    REQUIRE(file);
+    for (std::uint64_t k = 1; k <= ended; ++k) {
+      const std::string phase = k == 1 ? "first" : "first@" + std::to_string(k);
+      const auto* real = (*file)->stream(phase + ".source.real");
+      REQUIRE(real != nullptr);
+      CHECK((*file)->read(*real, 0, 100).value().at(198) == real_value(99, 0));
+      const auto* model = (*file)->records_of(phase + ".source.model");
+      REQUIRE(model != nullptr);
+      CHECK(number_of((*file)->read(*model, 0, 1).value().front().record) == 5);
+    }
+  }
+}
+
 }  // namespace
 
 TEST_CASE("a recording that is killed keeps all but its last second, streams and records, and every earlier phase") {
   const TemporaryFolder folder;
-  const Killed killed = kill_while_recording(folder.path(), 280);
+  const Killed killed = kill_while_recording(folder.path(), nullptr, 280);
   Taken second_before;
   for (const auto& taken : killed.taken)
     if (taken.time_ns <= killed.time_ns - 1'000'000'000) second_before = taken;
@@ -105,4 +129,10 @@ TEST_CASE("a recording that is killed keeps all but its last second, streams and
     WARN("skipped: no Python with h5py was found");
   else
     CHECK(check_data(path, std::to_string(least) + " " + std::to_string(second_before.records) + " swmr") == "ok\n");
+}
+
+TEST_CASE("a run that is killed while a phase begins or ends keeps every phase that ended") { kill_between_phases(8); }
+
+TEST_CASE("a run that is killed while a phase begins or ends keeps every phase that ended, at very many moments", "[long]") {
+  kill_between_phases(200);
 }

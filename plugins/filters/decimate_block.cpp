@@ -31,9 +31,11 @@ void Decimate::describe(Describe& d) {
 
 void Decimate::configure(const Parameters& p) {
   factor_ = p.integer("factor");
-  const bool filtered = p.boolean("anti_alias") && factor_ > 1;
-  taps_ = filtered ? anti_alias_taps(static_cast<std::size_t>(factor_), p.number("pass_band"), p.number("attenuation"))
-                   : std::vector<double>{1.0};
+  taps_ = {1.0};
+  if (!p.boolean("anti_alias") || factor_ == 1) return;
+  auto taps = anti_alias_taps(static_cast<std::size_t>(factor_), p.number("pass_band"), p.number("attenuation"));
+  if (!taps) fail(taps.error().text);
+  taps_ = std::move(*taps);
 }
 
 void Decimate::resolve(Facts& f) {

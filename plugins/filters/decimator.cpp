@@ -36,14 +36,14 @@ void Decimator::run(std::span<const double> x, std::span<double> y) {
 
 void Decimator::reset() { std::fill(frame_.begin(), frame_.end(), 0.0); }
 
-std::vector<double> anti_alias_taps(std::size_t factor, double pass_band, double attenuation_db) {
+numerics::Expected<std::vector<double>> anti_alias_taps(std::size_t factor, double pass_band, double attenuation_db) {
   const double nyquist = 1.0 / static_cast<double>(factor);
   const numerics::LowPass design{pass_band * nyquist, nyquist, attenuation_db + kMarginDb};
   const auto half = numerics::low_pass_half_length(design);
-  if (!half) return {};
+  if (!half) return tl::make_unexpected(half.error());
   const auto step = static_cast<Eigen::Index>(factor);
   const Eigen::VectorXd taps = numerics::low_pass(design, (*half + step - 1) / step * step);
-  return {taps.begin(), taps.end()};
+  return std::vector<double>(taps.begin(), taps.end());
 }
 
 }  // namespace bodeflow::filters

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bodeflow/numerics/error.hpp>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -27,8 +28,8 @@ class Decimator {
 
 /// Coefficients of the anti-alias filter of a decimation: linear phase, gain 1 at zero frequency, 2 K factor + 1 taps with K
 /// whole, so that its delay is K output samples. Pass band up to pass_band (0 to 1) of the new Nyquist frequency, stop band from
-/// the new Nyquist frequency on with attenuation_db. Method: Kaiser-windowed sinc, designed with 2 dB to spare. An empty vector
-/// for values that allow no design.
-std::vector<double> anti_alias_taps(std::size_t factor, double pass_band, double attenuation_db);
+/// the new Nyquist frequency on with attenuation_db. Method: Kaiser-windowed sinc, designed with 2 dB to spare. Errors: those of
+/// numerics::low_pass_half_length.
+numerics::Expected<std::vector<double>> anti_alias_taps(std::size_t factor, double pass_band, double attenuation_db);
 
 }  // namespace bodeflow::filters

@@ -22,7 +22,7 @@ void Delay::describe(Describe& d) {
       "y[n] = x[n - samples]; before the first input the initial values come out. A feedback loop needs a delay of at least one "
       "sample "
       "somewhere: this block is one way to give it. A stream with an end keeps its length, its last samples stay in the delay.");
-  d.required<std::int64_t>("samples").range(1, 1 << 28).doc("delay in samples of this stream");
+  d.required<std::int64_t>("samples").range(1, 1 << 24).doc("delay in samples of this stream");
   d.parameter("initial", std::vector<double>{0.0})
       .unit("")
       .doc("what comes out at first, in every channel: one value, or one a sample in order of time");

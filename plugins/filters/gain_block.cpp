@@ -13,7 +13,6 @@ void Gain::describe(Describe& d) {
 
 void Gain::configure(const Parameters& p) {
   change(p);
-  configured_ = gain_;
   has_unit_ = p.has("unit");
   if (has_unit_) unit_ = p.text("unit");
 }
@@ -24,8 +23,6 @@ void Gain::resolve(Facts& f) {
   f.out(out).channel_units.clear();
 }
 
-void Gain::activate(const Activation&) { reset(); }
-
 void Gain::process(Io& io) {
   if (io.element(in) == BF_C64) {
     multiply<std::complex<double>>(io);
@@ -35,8 +32,6 @@ void Gain::process(Io& io) {
 }
 
 void Gain::change(const Parameters& p) { gain_ = p.number("gain"); }
-
-void Gain::reset() { gain_ = configured_; }
 
 template <class T>
 void Gain::multiply(Io& io) const {

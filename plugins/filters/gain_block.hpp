@@ -14,16 +14,13 @@ class Gain final : public Block {
   static void describe(Describe& d);
   void configure(const Parameters& p) override;
   void resolve(Facts& f) override;
-  void activate(const Activation& a) override;
   void process(Io& io) override;
   void change(const Parameters& p) override;
-  void reset() override;
 
  private:
   template <class T>
   void multiply(Io& io) const;
 
-  double configured_ = 1.0;
   double gain_ = 1.0;
   bool has_unit_ = false;
   std::string unit_;

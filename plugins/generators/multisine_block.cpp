@@ -36,7 +36,7 @@ void Multisine::describe(Describe& d) {
   d.parameter("amplitude", std::vector<double>{1.0})
       .unit("")
       .doc("peak value of each line's cosine: one value for all lines, or one a line");
-  d.parameter("phases", "schroeder").choices({"schroeder", "random", "zero"});
+  d.parameter("phases", "schroeder").choices({"schroeder", "random", "zero"}).doc("of the lines; see above");
   d.optional<std::int64_t>("periods").range(1, 1e12).doc(
       "the stream ends after as many periods; without it, it has no end of its own");
   d.optional<std::int64_t>("seed").range(0, 9e18).doc("fixes random phases; without it the run's seed and the block's name do");
@@ -104,28 +104,32 @@ void Multisine::process(Io& io) {
 
 std::vector<std::int64_t> Multisine::lines_of(const Parameters& p) const {
   const bool range = p.has("lines.first") || p.has("lines.last") || p.given("lines.step");
-  std::vector<std::int64_t> lines;
   if (p.has("lines.list")) {
     if (range) fail("lines has a list as well as first, last or step; allowed: one of the two");
-    lines = p.integers("lines.list");
+    const std::vector<std::int64_t> lines = p.integers("lines.list");
     if (lines.empty()) fail("lines.list is empty");
     if (std::adjacent_find(lines.begin(), lines.end(), std::greater_equal<>()) != lines.end())
       fail("lines.list is not ascending");
-  } else {
-    if (!p.has("lines.first") || !p.has("lines.last")) fail("lines needs first and last, or a list");
-    for (std::int64_t k = p.integer("lines.first"); k <= p.integer("lines.last"); k += p.integer("lines.step"))
-      lines.push_back(k);
-    if (lines.empty()) {
-      fail("lines.last " + std::to_string(p.integer("lines.last")) + " is below lines.first " +
-           std::to_string(p.integer("lines.first")));
-    }
+    require_within(lines.front());
+    require_within(lines.back());
+    return lines;
   }
-  const std::int64_t highest = (period_length_ - 1) / 2;
-  if (lines.back() > highest) {
-    fail("line " + std::to_string(lines.back()) + " is not below half of the period of " + std::to_string(period_length_) +
-         " samples; allowed: 1 to " + std::to_string(highest));
-  }
+  if (!p.has("lines.first") || !p.has("lines.last")) fail("lines needs first and last, or a list");
+  const std::int64_t first = p.integer("lines.first"), last = p.integer("lines.last"), step = p.integer("lines.step");
+  if (last < first) fail("lines.last " + std::to_string(last) + " is below lines.first " + std::to_string(first));
+  if (step < 1) fail("lines.step is " + std::to_string(step) + ", allowed: at least 1");
+  require_within(first);
+  require_within(last);
+  std::vector<std::int64_t> lines;
+  for (std::int64_t k = first; k <= last; k += step > last - k ? last - k + 1 : step) lines.push_back(k);
   return lines;
+}
+
+void Multisine::require_within(std::int64_t line) const {
+  const std::int64_t highest = (period_length_ - 1) / 2;
+  if (line >= 1 && line <= highest) return;
+  fail("line " + std::to_string(line) + " does not lie between zero and half of the period of " + std::to_string(period_length_) +
+       " samples; allowed: 1 to " + std::to_string(highest));
 }
 
 }  // namespace bodeflow::generators

@@ -21,6 +21,7 @@ class Multisine final : public Block {
 
  private:
   std::vector<std::int64_t> lines_of(const Parameters& p) const;
+  void require_within(std::int64_t line) const;
 
   Rate rate_;
   std::string unit_;

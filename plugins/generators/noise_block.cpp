@@ -19,7 +19,7 @@ void Noise::describe(Describe& d) {
   d.reference("D. Blackman, S. Vigna, Scrambled linear pseudorandom number generators (xoshiro256++), 2021, doi:10.1145/3460772");
   d.reference("M. J. Wichura, Algorithm AS 241: the percentage points of the normal distribution, 1988, doi:10.2307/2347330");
   describe_source(d);
-  d.parameter("distribution", "normal").choices({"normal", "uniform"});
+  d.parameter("distribution", "normal").choices({"normal", "uniform"}).doc("of each sample, with the same mean and std");
   d.parameter("std", 1.0).unit("").range(0, 1e300).live().doc("standard deviation");
   d.parameter("mean", 0.0).unit("").live().doc("mean value");
   d.parameter("channels", std::int64_t{1}).range(1, 65536).doc("channels, independent of each other");
@@ -35,7 +35,6 @@ void Noise::configure(const Parameters& p) {
   own_seed_ = p.has("seed");
   if (own_seed_) seed_ = static_cast<std::uint64_t>(p.integer("seed"));
   change(p);
-  configured_ = level_;
 }
 
 void Noise::resolve(Facts& f) { f.out(out) = source_facts(rate_, unit_, channels_); }
@@ -62,7 +61,6 @@ void Noise::process(Io& io) {
 void Noise::change(const Parameters& p) { level_ = {p.number("std"), p.number("mean")}; }
 
 void Noise::reset() {
-  level_ = configured_;
   for (std::size_t c = 0; c < random_.size(); ++c) random_[c] = numerics::Random::stream(seed_, c);
 }
 

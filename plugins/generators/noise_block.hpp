@@ -30,7 +30,6 @@ class Noise final : public Block {
   bool normal_ = true;
   bool own_seed_ = false;
   std::uint64_t seed_ = 0;
-  Level configured_;
   Level level_;
   std::vector<numerics::Random> random_;
 };

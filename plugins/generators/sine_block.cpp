@@ -24,8 +24,7 @@ void Sine::configure(const Parameters& p) {
   rate_ = source_rate(p);
   unit_ = p.text("unit");
   start_phase_ = p.number("phase");
-  take(p);
-  configured_ = wave_;
+  change(p);
 }
 
 void Sine::resolve(Facts& f) { f.out(out) = source_facts(rate_, unit_); }
@@ -43,15 +42,7 @@ void Sine::process(Io& io) {
   for (double& value : y) value = wave.offset + wave.amplitude * sine_of_cycles(value);
 }
 
-void Sine::change(const Parameters& p) { take(p); }
-
-void Sine::reset() {
-  wave_ = configured_;
-  step_ = Phase::step(wave_.frequency, rate_);
-  phase_ = Phase::from_radians(start_phase_);
-}
-
-void Sine::take(const Parameters& p) {
+void Sine::change(const Parameters& p) {
   const Wave wave{p.number("frequency"), p.number("amplitude"), p.number("offset")};
   if (wave.frequency > 0.5 * rate_.hz()) {
     fail("frequency is " + hertz(wave.frequency) + ", allowed: at most half of the sample rate, " + hertz(0.5 * rate_.hz()));
@@ -59,5 +50,7 @@ void Sine::take(const Parameters& p) {
   wave_ = wave;
   step_ = Phase::step(wave.frequency, rate_);
 }
+
+void Sine::reset() { phase_ = Phase::from_radians(start_phase_); }
 
 }  // namespace bodeflow::generators

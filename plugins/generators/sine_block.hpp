@@ -20,8 +20,6 @@ class Sine final : public Block {
   void reset() override;
 
  private:
-  void take(const Parameters& p);
-
   struct Wave {
     double frequency = 0.0;
     double amplitude = 1.0;
@@ -30,7 +28,6 @@ class Sine final : public Block {
   Rate rate_;
   std::string unit_;
   double start_phase_ = 0.0;
-  Wave configured_;
   Wave wave_;
   Phase phase_;
   Phase step_;

@@ -7,6 +7,13 @@ namespace bodeflow::numerics {
 
 using std::numbers::pi;
 
+namespace {
+
+// Beyond it a filter is a mistake, and its length may not even fit an index.
+constexpr double kMostTaps = 0x1p26;
+
+}  // namespace
+
 double bessel_i0(double x) {
   const double quarter = 0.25 * x * x;
   double term = 1;
@@ -40,6 +47,7 @@ Expected<Eigen::Index> low_pass_half_length(const LowPass& design) {
   }
   if (!(design.attenuation_db >= 21) || !(design.attenuation_db <= 200)) return refused("the attenuation must be 21 to 200 dB");
   const double taps = (design.attenuation_db - 7.95) / (2.285 * pi * (design.stop_edge - design.pass_edge));
+  if (taps > kMostTaps) return refused("the transition band is too narrow: more than 2^26 taps");
   return static_cast<Eigen::Index>(std::ceil(0.5 * taps));
 }
 

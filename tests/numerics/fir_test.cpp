@@ -54,5 +54,6 @@ TEST_CASE("the group delay of a low-pass filter is its half length at every freq
 TEST_CASE("impossible bands and attenuations are refused") {
   CHECK(low_pass_half_length({0.5, 0.5, 80}).error().text == "the edges of the bands must be 0 < pass < stop <= 1");
   CHECK(low_pass_half_length({0.5, 1.5, 80}).error().text == "the edges of the bands must be 0 < pass < stop <= 1");
+  CHECK(low_pass_half_length({0.5, 0.5 + 1e-9, 80}).error().text == "the transition band is too narrow: more than 2^26 taps");
   CHECK(low_pass_half_length({0.5, 0.6, 10}).error().text == "the attenuation must be 21 to 200 dB");
 }

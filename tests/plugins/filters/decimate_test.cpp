@@ -30,7 +30,7 @@ constexpr std::size_t kSettled = 60;  // outputs: more than 2 K = 52
 
 TEST_CASE("anti-alias filters pass to 0.8 and stop from the new Nyquist frequency on by 80 dB, for small and large factors") {
   for (const std::size_t factor : {2u, 3u, 10u, 40u}) {
-    const std::vector<double> h = bodeflow::filters::anti_alias_taps(factor, 0.8, 80);
+    const std::vector<double> h = *bodeflow::filters::anti_alias_taps(factor, 0.8, 80);
     CHECK((h.size() - 1) % (2 * factor) == 0);
     CHECK((h.size() - 1) / (2 * factor) == 26);
     const Eigen::Map<const Eigen::VectorXd> taps(h.data(), static_cast<Eigen::Index>(h.size()));
@@ -84,4 +84,9 @@ TEST_CASE("the chunks of a decimation do not show in its bits, reset clears its 
   CHECK(given(cut, 3, input).run(1000, 7) == y);
   cut.reset();
   CHECK(cut.run(1000, 1) == y);
+}
+
+TEST_CASE("an anti-alias filter without room for its transition is refused") {
+  CHECK(bodeflow::filters::anti_alias_taps(2, 1.0, 80).error().text == "the edges of the bands must be 0 < pass < stop <= 1");
+  CHECK(bodeflow::filters::anti_alias_taps(2, 0.8, 1000).error().text == "the attenuation must be 21 to 200 dB");
 }

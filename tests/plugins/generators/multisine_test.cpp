@@ -135,7 +135,7 @@ TEST_CASE("lines that a period cannot hold are refused") {
   using List = std::vector<std::int64_t>;
   CHECK(refused([](LoadedBlock&) {}) == "lines needs first and last, or a list");
   CHECK(refused([](LoadedBlock& b) { given(b, 128, 3, 64, 1); }) ==
-        "line 64 is not below half of the period of 128 samples; allowed: 1 to 63");
+        "line 64 does not lie between zero and half of the period of 128 samples; allowed: 1 to 63");
   CHECK(refused([](LoadedBlock& b) { given(b, 128, 9, 3, 1); }) == "lines.last 3 is below lines.first 9");
   CHECK(refused([](LoadedBlock& b) { b.set("lines.list", List{3, 3}); }) == "lines.list is not ascending");
   CHECK(refused([](LoadedBlock& b) { b.set("lines.list", List{}); }) == "lines.list is empty");

@@ -27,7 +27,7 @@ struct LowPass {
 };
 
 /// The smallest `half` with which `low_pass` meets the design (Kaiser's formula for the length, rounded up).
-/// Errors: edges not 0 < pass_edge < stop_edge <= 1, an attenuation outside 21 .. 200 dB.
+/// Errors: edges not 0 < pass_edge < stop_edge <= 1, an attenuation outside 21 .. 200 dB, more than 2^26 taps.
 Expected<Eigen::Index> low_pass_half_length(const LowPass& design);
 
 /// The coefficients of a windowed-sinc low-pass of 2 half + 1 taps: cut-off in the middle of the transition band, Kaiser window.

@@ -11,6 +11,7 @@ std::size_t values_per_sample(const Buffer& buffer) { return buffer.element == B
 
 /// Whether the newest samples of `history`, that of a group of readers, are what a reader with fewer wants to see.
 bool agrees(const Buffer& buffer, std::uint64_t history, const std::vector<double>& values, const Flow& reader) {
+  if (values.empty() && reader.initial.empty()) return true;  // zeros, both, however many
   const std::size_t width = values_per_sample(buffer);
   const auto value = [](const std::vector<double>& from, std::size_t index) { return from.empty() ? 0.0 : from[index]; };
   for (std::size_t channel = 0; channel < buffer.channels; ++channel) {
@@ -98,8 +99,6 @@ class Assignment {
     Buffer buffer = empty(output.block, output.port);
     buffer.history = group.history;
     buffer.bytes = slot_bytes(buffer);
-    std::vector<double> initial = group.initial;
-    initial.resize(buffer.channels * buffer.history * values_per_sample(buffer), 0.0);
     std::vector<int> readers;
     for (const graph::End& reader : group.readers) {
       made_.inputs[reader.block][reader.port] = {index, facts_.blocks[reader.block].input_flows[reader.port].delay};
@@ -108,7 +107,7 @@ class Assignment {
     std::sort(readers.begin(), readers.end());
     readers.erase(std::unique(readers.begin(), readers.end()), readers.end());
     made_.all.push_back(buffer);
-    made_.initial.push_back(std::move(initial));
+    made_.initial.push_back(group.initial);
     made_.writer.push_back(output.block);
     made_.readers.push_back(std::move(readers));
     return index;

@@ -101,7 +101,8 @@ struct Plan {
   std::vector<std::vector<int>> readers;
   /// Blocks in a topological order of stream and message edges (delayed edges left out): the order of finish.
   std::vector<int> order;
-  /// Initial values that stand in a buffer's history at the start: channels x history, channel after channel (c64: pairs).
+  /// Initial values that stand in a buffer's history at the start: channels x history, channel after channel (c64: pairs); empty:
+  /// zeros.
   std::vector<std::vector<double>> initial;
   std::uint64_t bytes = 0;  ///< of all buffers and rings
   double chunk_s = 0.0;

@@ -6,7 +6,7 @@ void Decimate::describe(Describe& d) {
   d.id("filters.decimate")
       .summary("Lowers the sample rate by a whole factor, behind an anti-alias filter.")
       .realtime_safe()
-      .cost_ns(400);
+      .cost_ns(250);
   d.doc(
       "y[m] = sum_j h[j] x[m factor - j], h a Kaiser-windowed sinc of linear phase with gain 1 at zero frequency: it passes up "
       "to pass_band of the "

@@ -17,7 +17,7 @@ void copy(Io& io) {
 }  // namespace
 
 void Delay::describe(Describe& d) {
-  d.id("filters.delay").summary("Delays a stream by whole samples.").realtime_safe().in_place().cost_ns(0.3);
+  d.id("filters.delay").summary("Delays a stream by whole samples.").realtime_safe().in_place().cost_ns(0.1);
   d.doc(
       "y[n] = x[n - samples]; before the first input the initial values come out. A feedback loop needs a delay of at least one "
       "sample "

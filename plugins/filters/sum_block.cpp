@@ -20,7 +20,7 @@ void require_alike(const StreamFacts& first, const char* first_name, const Strea
 }  // namespace
 
 void Sum::describe(Describe& description) {
-  description.id("filters.sum").summary("Adds two to four streams with weights.").realtime_safe().in_place().cost_ns(0.8);
+  description.id("filters.sum").summary("Adds two to four streams with weights.").realtime_safe().in_place().cost_ns(0.3);
   description.doc(
       "y[n] = w_a a[n] + w_b b[n] + w_c c[n] + w_d d[n], channel by channel. weights: [1, -1] gives the control error of a loop, "
       "reference "

@@ -12,7 +12,7 @@ void Multisine::describe(Describe& d) {
       .summary("Gives a periodic sum of cosines on chosen spectral lines.")
       .role("source")
       .realtime_safe()
-      .cost_ns(1);
+      .cost_ns(0.2);
   d.doc(
       "x[n] = sum_i a_i cos(2 pi k_i n / N + phi_i), line k at k sample_rate / N. One period is computed to rounding when the "
       "run begins, then played "

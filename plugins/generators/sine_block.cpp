@@ -5,7 +5,7 @@
 namespace bodeflow::generators {
 
 void Sine::describe(Describe& d) {
-  d.id("generators.sine").summary("Gives a sine of exact phase.").role("source").realtime_safe().cost_ns(6);
+  d.id("generators.sine").summary("Gives a sine of exact phase.").role("source").realtime_safe().cost_ns(5);
   d.doc(
       "y[n] = offset + amplitude sin(2 pi frequency n / sample_rate + phase). The phase is kept as a 128-bit fraction of a "
       "cycle: after n "

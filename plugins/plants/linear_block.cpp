@@ -19,7 +19,7 @@ void Linear::describe(Describe& d) {
       .role("plant")
       .realtime_safe()
       .in_place()
-      .cost_ns(8);
+      .cost_ns(5);
   d.doc(
       "A continuous-time model is driven by its input held over each sample (zero-order hold) and, after that, delayed by "
       "`delay`, which need not be "

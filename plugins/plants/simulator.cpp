@@ -42,6 +42,10 @@ void Simulator::run(const double* const* inputs, double* const* outputs, std::si
       return run_single<3>(inputs[0], outputs[0], count);
     case 4:
       return run_single<4>(inputs[0], outputs[0], count);
+    case 5:
+      return run_single<5>(inputs[0], outputs[0], count);
+    case 6:
+      return run_single<6>(inputs[0], outputs[0], count);
     default:
       return run_general(inputs, outputs, count);
   }
@@ -52,14 +56,13 @@ void Simulator::reset() {
   begun_ = false;
 }
 
-// One input, one output and a few states: everything stays in registers.
+// One input, one output and a few states: the state stays in registers, and every loop is unrolled.
 template <int kStates>
 void Simulator::run_single(const double* u, double* y, std::size_t count) {
-  std::array<double, kStates * kStates> a;
-  std::array<double, kStates> b, c, x;
-  std::copy_n(a_.begin(), a.size(), a.begin());
-  std::copy_n(b_.begin(), b.size(), b.begin());
-  std::copy_n(c_.begin(), c.size(), c.begin());
+  const double* const a = a_.data();
+  const double* const b = b_.data();
+  const double* const c = c_.data();
+  std::array<double, kStates> x;
   std::copy_n(x_.begin(), x.size(), x.begin());
   const double d = d_[0];
   const auto advance = [&](double input) {

@@ -91,7 +91,7 @@ void FileBlock::select_all() {
 void FileBlock::report(const Timing& timing) const {
   const double rate = summary_.rate.hz();
   std::string text = path_ + ": " + std::to_string(summary_.rows) + " rows at " + number_text(rate) + " Hz (" +
-                     number_text(static_cast<double>(summary_.rows) / rate) + " s), ";
+                     short_text(static_cast<double>(summary_.rows) / rate) + " s), ";
   const auto time = reader_->time_column();
   if (time && !timing.ignore_time_column) {
     text += "equally sampled by column '" + reader_->columns()[*time].header + "', no gaps";
@@ -102,8 +102,8 @@ void FileBlock::report(const Timing& timing) const {
   text += "; read";
   for (std::size_t i = 0; i < selected_.size(); ++i) {
     const ColumnSummary& s = summary_.columns[i];
-    text += (i == 0 ? " " : ", ") + label(reader_->columns()[selected_[i]]) + " " + number_text(s.least) + " to " +
-            number_text(s.greatest);
+    text += (i == 0 ? " " : ", ") + label(reader_->columns()[selected_[i]]) + " " + short_text(s.least) + " to " +
+            short_text(s.greatest);
   }
   std::string passed;
   for (std::size_t c = 0; c < reader_->columns().size(); ++c) {

@@ -1,3 +1,3 @@
 #include "file_block.hpp"
 
-BODEFLOW_PLUGIN("acquisition", "1.0.0", bodeflow::acquisition::FileBlock)
+BODEFLOW_PLUGIN("acquisition", "0.1.0", bodeflow::acquisition::FileBlock)

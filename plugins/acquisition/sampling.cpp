@@ -32,6 +32,12 @@ std::string number_text(double value) {
   return {text, end};
 }
 
+std::string short_text(double value) {
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
+  return {text, end};
+}
+
 std::string Sampling::describe_step(double step) const {
   const double expected = interval_s();
   int digits = 0;

@@ -41,4 +41,7 @@ class Sampling {
 /// "0.0004" and the like: the shortest digits that read back as the value.
 std::string number_text(double value);
 
+/// The same with at most six significant digits, for people.
+std::string short_text(double value);
+
 }  // namespace bodeflow::acquisition

@@ -1,4 +1,4 @@
 #include "csv_block.hpp"
 #include "records_block.hpp"
 
-BODEFLOW_PLUGIN("output", "1.0.0", bodeflow::output::CsvBlock, bodeflow::output::RecordsBlock)
+BODEFLOW_PLUGIN("output", "0.1.0", bodeflow::output::CsvBlock, bodeflow::output::RecordsBlock)

@@ -1,3 +1,3 @@
 #include "averaging_dft_block.hpp"
 
-BODEFLOW_PLUGIN("spectrum", "1.0.0", bodeflow::spectrum::AveragingDftBlock)
+BODEFLOW_PLUGIN("spectrum", "0.1.0", bodeflow::spectrum::AveragingDftBlock)

@@ -33,6 +33,7 @@ void put(RecordBuilder& record, const char* name, const std::string& unit, std::
 
 std::string ratio_unit(const std::string& above, const std::string& below) {
   if (is_one(below)) return above;
+  if (above == below) return "1";
   const bool simple = below.find_first_of("/* ") == std::string::npos;
   return (is_one(above) ? "1" : above) + "/" + (simple ? below : "(" + below + ")");
 }

@@ -21,7 +21,7 @@ struct Measurement {
 /// The record `frequency_response` of an estimate; README.md lists its attributes and arrays.
 RecordBuilder response_record(const Estimate& estimate, const Measurement& from);
 
-/// The unit of a ratio: "rad/A"; "rad" and "1/A" where one of them is without unit.
+/// The unit of a ratio: "rad/A"; "rad" and "1/A" where one of them is without unit, "1" where they are equal.
 std::string ratio_unit(const std::string& above, const std::string& below);
 
 }  // namespace bodeflow::spectrum

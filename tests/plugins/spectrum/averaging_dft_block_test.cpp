@@ -206,4 +206,5 @@ TEST_CASE("averaging_dft: units of ratios") {
   CHECK(spectrum::ratio_unit("rad", "m/s") == "rad/(m/s)");
   CHECK(spectrum::ratio_unit("rad", "") == "rad");
   CHECK(spectrum::ratio_unit("", "V") == "1/V");
+  CHECK(spectrum::ratio_unit("V", "V") == "1");
 }

@@ -125,7 +125,7 @@ void put(Json& object, const std::string& name, const Json& value, bool required
     return;
   }
   Json& group = object["properties"][name.substr(0, dot)];
-  if (group.is_null()) group = {{"type", "object"}, {"additionalProperties", false}};
+  if (group.is_null()) group = {{"type", Json::array({"object", "string"})}, {"additionalProperties", false}};  // or ${name}
   put(group, name.substr(dot + 1), value, required);
 }
 
@@ -229,7 +229,7 @@ Json definitions(const Registry& registry) {
           {"blocks",
            {{"type", "object"},
             {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]+$"}}},
-            {"additionalProperties", {{"$ref", "#/definitions/block"}}}}},
+            {"additionalProperties", or_variable(Json::array({{{"$ref", "#/definitions/block"}}}))}}},
           {"run", run_definition()},
           {"connections", connections_definition()},
           {"schedule", schedule_definition()},

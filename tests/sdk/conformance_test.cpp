@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bodeflow/testing/conformance.hpp>
 
+#include "../../sdk/testing/source/sanitized.hpp"
 #include "catch.hpp"
 
 using namespace bodeflow::testing;
@@ -39,8 +40,12 @@ TEST_CASE("a plugin that keeps the contract passes every check") {
   const Report report = check_plugin(BODEFLOW_GOOD_PLUGIN, options);
   INFO(to_text(report));
   CHECK(report.passed());
+#if defined(BODEFLOW_SANITIZED)
+  CHECK(finding(report, kRealtime) == "skipped: the test program has no hook");
+#else
   CHECK(report.count(Status::skip) == 0);
   CHECK(finding(report, kRealtime) == "passes");
+#endif
   CHECK(finding(report, "works in place as it claims") == "passes");
   CHECK(finding(report, "survives records without content") == "passes");
   CHECK(std::any_of(report.checks.begin(), report.checks.end(), [](const Check& c) { return c.setting == "@element = c64"; }));
@@ -89,7 +94,7 @@ TEST_CASE("each breach of the contract is found by its check") {
   CHECK(begins(of("bad.unknown_unit", "has a sound descriptor"), "parameter 'speed': unit 'furlong/fortnight' is unknown"));
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(BODEFLOW_SANITIZED)
 TEST_CASE("a false claim of real-time safety is found, with the function that was called") {
   const auto of = [](const char* block) { return finding(check_plugin(BODEFLOW_BAD_PLUGIN, only(block)), kRealtime); };
   CHECK(begins(of("bad.allocates"), "process calls malloc at firing 0 "));

@@ -3,12 +3,9 @@
 // counted.
 #include <bodeflow/testing/hook.hpp>
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define BODEFLOW_SANITIZED 1
-#endif
-#endif
-#if !defined(BODEFLOW_SANITIZED) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#include "sanitized.hpp"
+
+#if !defined(BODEFLOW_SANITIZED)
 
 #include <dlfcn.h>
 #include <pthread.h>

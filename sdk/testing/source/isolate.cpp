@@ -10,6 +10,8 @@
 #include <cstring>
 #include <exception>
 
+#include "sanitized.hpp"
+
 namespace bodeflow::testing {
 namespace {
 
@@ -42,7 +44,7 @@ void send(int pipe, char kind, const std::string& text) {
 
 /// A plugin that asks for a senseless amount of memory is to be told so, not to drive the machine into the ground.
 void limit_memory() {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(BODEFLOW_SANITIZED)
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0) return;
   std::FILE* file = std::fopen("/proc/self/statm", "r");

@@ -52,7 +52,7 @@ Ended run_program(const std::vector<std::string>& command, const std::filesystem
   return {WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), slurp(out), slurp(err)};
 }
 
-Ended bodeflow(const std::vector<std::string>& arguments, const std::filesystem::path& folder, const std::vector<std::string>& environment) {
+Ended run_bodeflow(const std::vector<std::string>& arguments, const std::filesystem::path& folder, const std::vector<std::string>& environment) {
   std::vector<std::string> command{BODEFLOW_BUILD_DIR "/bin/bodeflow"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run_program(command, folder, environment);

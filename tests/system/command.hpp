@@ -13,7 +13,7 @@ struct Ended {
 };
 
 /// Runs the built command as a user does, in a folder, and gives what it printed. `environment` adds to our own.
-Ended bodeflow(const std::vector<std::string>& arguments, const std::filesystem::path& folder = ".",
+Ended run_bodeflow(const std::vector<std::string>& arguments, const std::filesystem::path& folder = ".",
                const std::vector<std::string>& environment = {});
 
 /// Runs any program.

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-using bodeflow::test::bodeflow;
+using bodeflow::test::run_bodeflow;
 using bodeflow::test::Folder;
 
 namespace {
@@ -11,7 +11,7 @@ namespace {
 /// The hashes of every output and record of a run.
 nlohmann::json hashes(const Folder& folder, const std::string& graph, const std::string& chunk, const std::string& threads) {
   const std::string out = "out-" + chunk + "-" + threads;
-  const auto ended = bodeflow({"run", graph, "--set", "run.chunk=" + chunk, "--threads", threads, "--out", out}, folder.path());
+  const auto ended = run_bodeflow({"run", graph, "--set", "run.chunk=" + chunk, "--threads", threads, "--out", out}, folder.path());
   INFO(ended.err);
   REQUIRE(ended.exit_code == 0);
   return nlohmann::json::parse(folder.read(out + "/manifest.json"))["hashes"];

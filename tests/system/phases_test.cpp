@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-using bodeflow::test::bodeflow;
+using bodeflow::test::run_bodeflow;
 using bodeflow::test::Folder;
 using Catch::Matchers::Contains;
 
@@ -29,7 +29,7 @@ std::string measurement(const std::string& name, const std::string& more) {
 
 nlohmann::json results(const Folder& folder, const std::string& text) {
   folder.write("graph.yaml", text);
-  const auto ended = bodeflow({"run", "graph.yaml", "--out", "out"}, folder.path());
+  const auto ended = run_bodeflow({"run", "graph.yaml", "--out", "out"}, folder.path());
   INFO(ended.err);
   REQUIRE(ended.exit_code == 0);
   return nlohmann::json::parse(folder.read("out/result.json"))["results"];
@@ -82,7 +82,7 @@ TEST_CASE("a phase repeats until its condition holds, at most as often as it say
 TEST_CASE("a failing run of a sweep is named by its index") {
   const Folder folder;
   folder.write("graph.yaml", "bodeflow: 1\nphases:\n" + measurement("bad", "    sweep: {dft.period: [100, 100000]}\n"));
-  const auto ended = bodeflow({"run", "graph.yaml", "--out", "out"}, folder.path());
+  const auto ended = run_bodeflow({"run", "graph.yaml", "--out", "out"}, folder.path());
   CHECK(ended.exit_code == 1);
   CHECK_THAT(ended.err, Contains("run 1 of the sweep failed") && Contains("dft"));
 }

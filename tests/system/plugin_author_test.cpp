@@ -1,7 +1,7 @@
 #include "catch.hpp"
 #include "system/command.hpp"
 
-using bodeflow::test::bodeflow;
+using bodeflow::test::run_bodeflow;
 using bodeflow::test::Folder;
 using bodeflow::test::run_program;
 using Catch::Matchers::Contains;
@@ -38,17 +38,17 @@ TEST_CASE("a new plugin outside the tree builds against the installed SDK alone,
 
 TEST_CASE("new plugin refuses a name that is no identifier and a folder that exists") {
   const Folder folder;
-  const auto name = bodeflow({"new", "plugin", "Bad-Name"}, folder.path());
+  const auto name = run_bodeflow({"new", "plugin", "Bad-Name"}, folder.path());
   CHECK(name.exit_code == 2);
   CHECK_THAT(name.err, Contains("allowed are lower-case letters, digits and _, a letter first"));
   std::filesystem::create_directory(folder.path() / "taken");
-  CHECK(bodeflow({"new", "plugin", "taken"}, folder.path()).exit_code == 2);
+  CHECK(run_bodeflow({"new", "plugin", "taken"}, folder.path()).exit_code == 2);
 }
 
 TEST_CASE("test-plugin refuses a file that is no plugin with exit code 4") {
   const Folder folder;
   folder.write("not_a_plugin.so", "text");
-  const auto ended = bodeflow({"test-plugin", "not_a_plugin.so"}, folder.path());
+  const auto ended = run_bodeflow({"test-plugin", "not_a_plugin.so"}, folder.path());
   CHECK(ended.exit_code == 4);
   CHECK_THAT(ended.err, Contains("not_a_plugin.so"));
 }

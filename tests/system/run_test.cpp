@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-using bodeflow::test::bodeflow;
+using bodeflow::test::run_bodeflow;
 using bodeflow::test::Folder;
 using bodeflow::test::run_program;
 using Catch::Matchers::Contains;
@@ -28,7 +28,7 @@ constexpr const char* kTone =
 TEST_CASE("a run leaves its directory with graph, plan, manifest, events, data and result") {
   const Folder folder;
   folder.write("tone.yaml", kTone);
-  const auto ended = bodeflow({"run", "tone.yaml", "--out", "out"}, folder.path());
+  const auto ended = run_bodeflow({"run", "tone.yaml", "--out", "out"}, folder.path());
   INFO(ended.err);
   REQUIRE(ended.exit_code == 0);
   for (const char* file : {"graph.yaml", "plan.json", "manifest.json", "events.jsonl", "data.h5", "result.json", "tone.csv"})
@@ -42,9 +42,9 @@ TEST_CASE("a run leaves its directory with graph, plan, manifest, events, data a
 TEST_CASE("a directory that holds a run is not written over") {
   const Folder folder;
   folder.write("tone.yaml", kTone);
-  REQUIRE(bodeflow({"run", "tone.yaml", "--out", "out"}, folder.path()).exit_code == 0);
+  REQUIRE(run_bodeflow({"run", "tone.yaml", "--out", "out"}, folder.path()).exit_code == 0);
   const std::string before = folder.read("out/manifest.json");
-  const auto again = bodeflow({"run", "tone.yaml", "--out", "out"}, folder.path());
+  const auto again = run_bodeflow({"run", "tone.yaml", "--out", "out"}, folder.path());
   CHECK(again.exit_code == 1);
   CHECK_THAT(again.err, Contains("out"));
   CHECK(folder.read("out/manifest.json") == before);
@@ -53,7 +53,7 @@ TEST_CASE("a directory that holds a run is not written over") {
 TEST_CASE("--dry-run shows the plan and makes nothing") {
   const Folder folder;
   folder.write("tone.yaml", kTone);
-  const auto ended = bodeflow({"run", "tone.yaml", "--out", "out", "--dry-run"}, folder.path());
+  const auto ended = run_bodeflow({"run", "tone.yaml", "--out", "out", "--dry-run"}, folder.path());
   CHECK(ended.exit_code == 0);
   CHECK_THAT(ended.out, Contains("Nothing was run."));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
@@ -62,7 +62,7 @@ TEST_CASE("--dry-run shows the plan and makes nothing") {
 TEST_CASE("--for sets the duration, --set a parameter, --json prints the results alone") {
   const Folder folder;
   folder.write("tone.yaml", kTone);
-  const auto ended = bodeflow({"run", "tone.yaml", "--out", "out", "--for", "0.5 ms", "--set", "twice.gain=10", "--json"}, folder.path());
+  const auto ended = run_bodeflow({"run", "tone.yaml", "--out", "out", "--for", "0.5 ms", "--set", "twice.gain=10", "--json"}, folder.path());
   REQUIRE(ended.exit_code == 0);
   CHECK(nlohmann::json::parse(ended.out)["status"] == "complete");
   const std::string table = folder.read("out/tone.csv");
@@ -73,10 +73,10 @@ TEST_CASE("--for sets the duration, --set a parameter, --json prints the results
 TEST_CASE("a wrong --set, --seed or --isa is a usage or graph error") {
   const Folder folder;
   folder.write("tone.yaml", kTone);
-  CHECK(bodeflow({"run", "tone.yaml", "--set", "twice.gain"}, folder.path()).exit_code == 2);
-  CHECK(bodeflow({"run", "tone.yaml", "--seed", "-3"}, folder.path()).exit_code == 2);
-  CHECK(bodeflow({"run", "tone.yaml", "--isa", "z80"}, folder.path()).exit_code == 2);
-  const auto unknown = bodeflow({"run", "tone.yaml", "--set", "twice.gian=3"}, folder.path());
+  CHECK(run_bodeflow({"run", "tone.yaml", "--set", "twice.gain"}, folder.path()).exit_code == 2);
+  CHECK(run_bodeflow({"run", "tone.yaml", "--seed", "-3"}, folder.path()).exit_code == 2);
+  CHECK(run_bodeflow({"run", "tone.yaml", "--isa", "z80"}, folder.path()).exit_code == 2);
+  const auto unknown = run_bodeflow({"run", "tone.yaml", "--set", "twice.gian=3"}, folder.path());
   CHECK(unknown.exit_code == 3);
   CHECK_THAT(unknown.err, Contains("did you mean"));
 }
@@ -86,8 +86,8 @@ TEST_CASE("the seed of the command line changes the noise, the same seed repeats
   folder.write("noise.yaml",
                "bodeflow: 1\nrun: {duration: 10 ms}\nblocks:\n  noise: {block: generators.noise, sample_rate: 10 kHz}\n"
                "  table: {block: output.csv, file: noise.csv}\nconnections:\n  - noise -> table\n");
-  for (const char* out : {"a", "b"}) REQUIRE(bodeflow({"run", "noise.yaml", "--seed", "7", "--out", out}, folder.path()).exit_code == 0);
-  REQUIRE(bodeflow({"run", "noise.yaml", "--seed", "8", "--out", "c"}, folder.path()).exit_code == 0);
+  for (const char* out : {"a", "b"}) REQUIRE(run_bodeflow({"run", "noise.yaml", "--seed", "7", "--out", out}, folder.path()).exit_code == 0);
+  REQUIRE(run_bodeflow({"run", "noise.yaml", "--seed", "8", "--out", "c"}, folder.path()).exit_code == 0);
   CHECK(folder.read("a/noise.csv") == folder.read("b/noise.csv"));
   CHECK(folder.read("a/noise.csv") != folder.read("c/noise.csv"));
 }
@@ -113,8 +113,8 @@ TEST_CASE("rerun repeats a run bit for bit, and tells when it does not") {
   folder.write("noise.yaml",
                "bodeflow: 1\nrun: {duration: 1 s, seed: 3}\nblocks:\n  noise: {block: generators.noise, sample_rate: 10 kHz}\n"
                "  twice: {block: filters.gain, gain: 2}\n  table: {block: output.csv, file: noise.csv}\nconnections:\n  - noise -> twice -> table\nrecord: all\n");
-  REQUIRE(bodeflow({"run", "noise.yaml", "--out", "first", "--seed", "11", "--set", "twice.gain=3"}, folder.path()).exit_code == 0);
-  const auto again = bodeflow({"rerun", "first", "--out", "second"}, folder.path());
+  REQUIRE(run_bodeflow({"run", "noise.yaml", "--out", "first", "--seed", "11", "--set", "twice.gain=3"}, folder.path()).exit_code == 0);
+  const auto again = run_bodeflow({"rerun", "first", "--out", "second"}, folder.path());
   INFO(again.err);
   CHECK(again.exit_code == 0);
   CHECK_THAT(again.out, Contains("all identical bit for bit"));
@@ -122,10 +122,10 @@ TEST_CASE("rerun repeats a run bit for bit, and tells when it does not") {
   auto manifest = nlohmann::json::parse(folder.read("first/manifest.json"));
   manifest["hashes"]["twice.out"] = std::string(64, '0');
   folder.write("first/manifest.json", manifest.dump());
-  const auto differs = bodeflow({"rerun", "first", "--out", "third"}, folder.path());
+  const auto differs = run_bodeflow({"rerun", "first", "--out", "third"}, folder.path());
   CHECK(differs.exit_code == 1);
   CHECK_THAT(differs.err, Contains("not identical: twice.out"));
-  CHECK(bodeflow({"rerun", "nowhere"}, folder.path()).exit_code == 2);
+  CHECK(run_bodeflow({"rerun", "nowhere"}, folder.path()).exit_code == 2);
 }
 
 TEST_CASE("a block that writes outside the run directory is refused with its name") {
@@ -133,7 +133,7 @@ TEST_CASE("a block that writes outside the run directory is refused with its nam
   folder.write("escape.yaml",
                "bodeflow: 1\nrun: {duration: 1 ms}\nblocks:\n  tone: {block: generators.sine, sample_rate: 10 kHz, frequency: 100 Hz}\n"
                "  table: {block: output.csv, file: ../tone.csv}\nconnections:\n  - tone -> table\n");
-  const auto ended = bodeflow({"run", "escape.yaml", "--out", "out"}, folder.path());
+  const auto ended = run_bodeflow({"run", "escape.yaml", "--out", "out"}, folder.path());
   CHECK(ended.exit_code == 1);
   CHECK_THAT(ended.err, Contains("block 'table'"));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "tone.csv"));

@@ -21,11 +21,14 @@ tl::expected<nlohmann::json, std::string> read_manifest(const fs::path& director
 
 /// What differs between the run and this machine, a line each: the numbers may then differ.
 void warn_of_changes(const nlohmann::json& manifest, const Registry& registry) {
-  for (const auto& plugin : manifest.value("plugins", nlohmann::json::array()))
+  const nlohmann::json plugins = manifest.value("plugins", nlohmann::json::array());
+  for (const auto& plugin : plugins)
     for (const auto& found : registry.plugins())
       if (found.name == plugin.value("name", "") && found.sha256 != plugin.value("sha256", ""))
         say_warning(fmt::format("plugin '{}' is not the file of the run: {} then, {} now", found.name, plugin.value("version", "?"), found.version));
-  for (const auto& [path, input] : manifest.value("inputs", nlohmann::json::object()).items()) {
+  const nlohmann::json inputs = manifest.value("inputs", nlohmann::json::array());
+  for (const auto& input : inputs) {
+    const std::string path = input.value("path", "");
     const auto sum = record::sha256_file(path);
     if (!sum || *sum != input.value("sha256", "")) say_warning(fmt::format("input file '{}' has changed since the run", path));
   }

@@ -18,7 +18,7 @@ void begin_chunk(BlockRun& block, const Chunk& chunk) {
 }
 
 void set_count(BlockRun& block, std::int64_t count) {
-  block.process.count = static_cast<std::uint64_t>(count);
+  block.count = count;
   for (std::size_t i = 0; i < block.ports.size(); ++i)
     block.streams[i].count = static_cast<std::uint64_t>(count) * block.ports[i].samples;
 }
@@ -35,7 +35,7 @@ bool settle(BlockRun& block, std::int32_t status) {
     control.fail(block.index, reason.empty() ? "failed without a reason" : std::move(reason));
     return false;
   }
-  const std::uint64_t done = block.process.done, count = block.process.count;
+  const std::uint64_t done = block.process.done, count = static_cast<std::uint64_t>(block.count);
   if (done == count) return true;
   if (done > count) {
     control.fail(block.index, fmt::format("says that it made {} firings where {} were asked for", done, count));

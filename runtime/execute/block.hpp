@@ -61,6 +61,7 @@ struct BlockRun {
   std::int32_t (*call)(void*, bf_process*) = nullptr;
   void* self = nullptr;
   std::int64_t position = 0;  ///< firings made
+  std::int64_t count = 0;     ///< of the call; `process` lies open to the block
   std::uint64_t calls = 0;
   std::vector<bf_stream> streams;  ///< inputs, then outputs
   bool fault = false;              ///< a wrong emit: `fault_text`
@@ -112,7 +113,8 @@ void set_count(BlockRun& block, std::int64_t count);
 inline bool fire(BlockRun& block, std::int64_t count, Lane& lane) {
   bf_process& process = block.process;
   const auto firings = static_cast<std::uint64_t>(count);
-  if (process.count != firings) set_count(block, count);
+  if (block.count != count) set_count(block, count);
+  process.count = firings;
   process.position = static_cast<std::uint64_t>(block.position);
   process.done = firings;
   lane.call(block.index);

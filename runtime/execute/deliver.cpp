@@ -51,6 +51,7 @@ bool call_empty(BlockRun& block, std::int32_t (*function)(void*, bf_process*), c
   if (function == nullptr) return true;
   const Stopwatch stopwatch(block);
   set_count(block, 0);
+  block.process.count = 0;
   block.process.position = static_cast<std::uint64_t>(block.position);
   block.process.done = 0;
   show_messages(block);

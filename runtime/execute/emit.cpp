@@ -25,8 +25,8 @@ std::string fault_of(const BlockRun& block, std::uint32_t port, const bf_record*
   if (port >= block.routes.size()) return fmt::format("sent a record on message output {}: it has {}", port, block.routes.size());
   const std::string& name = output_name(block, port);
   if (record == nullptr || record->bytes == nullptr) return fmt::format("sent no record on '{}': the pointer is null", name);
-  if (offset > block.process.count)
-    return fmt::format("sent a record on '{}' at offset {} of a call with {} firings", name, offset, block.process.count);
+  if (offset > static_cast<std::uint64_t>(block.count))
+    return fmt::format("sent a record on '{}' at offset {} of a call with {} firings", name, offset, block.count);
   const auto view = RecordView::check({record->bytes, static_cast<std::size_t>(record->size)});
   if (!view) return fmt::format("sent a broken record on '{}': {}", name, view.error().text);
   const std::string& described = block.sends[port];

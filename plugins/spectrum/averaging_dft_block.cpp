@@ -9,6 +9,8 @@ namespace {
 // Where no line is named: -10 dB of the strongest line divides the lines of a flat multisine from what a drive or an amplifier
 // adds between them.
 constexpr double kDefaultThreshold = 0.3;
+// A frame and four spectra of this length take some 10 GB.
+constexpr std::int64_t kLongestPeriod = 100'000'000;
 
 }  // namespace
 
@@ -53,6 +55,7 @@ void AveragingDftBlock::describe(Describe& d) {
 
 void AveragingDftBlock::configure(const Parameters& p) {
   period_ = p.integer("period");
+  if (period_ < 3 || period_ > kLongestPeriod) fail("period " + std::to_string(period_) + "; allowed: 3 to 100000000");
   skip_ = p.integer("skip");
   every_ = p.integer("every");
   measurement_.form = p.text("form") == "known_input" ? Form::known_input : Form::errors_in_variables;
@@ -70,12 +73,14 @@ void AveragingDftBlock::configure_lines(const Parameters& p) {
   if (ranged) {
     const std::int64_t first = p.has("lines.first") ? p.integer("lines.first") : 1;
     const std::int64_t last = p.has("lines.last") ? p.integer("lines.last") : highest;
+    const std::int64_t step = p.integer("lines.step");
+    if (first < 1 || step < 1) fail("lines: first and step are at least 1");
     if (first > last) fail("lines: first " + std::to_string(first) + " is above last " + std::to_string(last));
     if (last > highest) {
       fail("lines: last " + std::to_string(last) + " is at or above the Nyquist frequency; at most " + std::to_string(highest) +
            " with a period of " + std::to_string(period_));
     }
-    for (std::int64_t k = first; k <= last; k += p.integer("lines.step")) choice_.candidates.push_back(k);
+    for (std::int64_t k = first; k <= last; k += step) choice_.candidates.push_back(k);
   }
   for (std::size_t i = 0; i < choice_.candidates.size(); ++i) {
     const std::int64_t k = choice_.candidates[i];

@@ -14,6 +14,7 @@ class Gain final : public Block {
   static void describe(Describe& d);
   void configure(const Parameters& p) override;
   void resolve(Facts& f) override;
+  void activate(const Activation& a) override { vector_level_ = a.vector_level; }
   void process(Io& io) override;
   void change(const Parameters& p) override;
 
@@ -22,6 +23,7 @@ class Gain final : public Block {
   void multiply(Io& io) const;
 
   double gain_ = 1.0;
+  int vector_level_ = 1;
   bool has_unit_ = false;
   std::string unit_;
 };

@@ -8,8 +8,12 @@
 
 namespace bodeflow::execute {
 
-void begin_chunk(BlockRun& block, const Chunk& chunk) {
+void rewind(BlockRun& block) {
   for (std::size_t i = 0; i < block.ports.size(); ++i) block.streams[i].offset = block.ports[i].base;
+}
+
+void begin_chunk(BlockRun& block, const Chunk& chunk) {
+  rewind(block);
   if (!block.rotates) return;
   for (std::size_t i = 0; i < block.ports.size(); ++i) {
     const auto& channels = block.ports[i].channels;
@@ -47,7 +51,6 @@ bool settle(BlockRun& block, std::int32_t status) {
     return false;
   }
   block.position += static_cast<std::int64_t>(done);
-  for (std::size_t i = 0; i < block.ports.size(); ++i) block.streams[i].offset += done * block.ports[i].samples;
   block.end.store(block.position, std::memory_order_relaxed);
   block.run->ends_changed.store(true, std::memory_order_relaxed);
   return true;

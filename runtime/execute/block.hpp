@@ -51,7 +51,7 @@ struct Feed {
 };
 
 /// A block while it runs. All but `end` and the inbox's sending side belongs to the thread that runs it.
-struct BlockRun {
+struct alignas(64) BlockRun {
   BlockRun() = default;
   BlockRun(const BlockRun&) = delete;
   BlockRun& operator=(const BlockRun&) = delete;
@@ -104,13 +104,16 @@ struct BlockRun {
 /// Puts the streams of `block` to the start of `chunk`.
 void begin_chunk(BlockRun& block, const Chunk& chunk);
 
+/// Puts the streams back to where a chunk begins.
+void rewind(BlockRun& block);
+
 /// After a call that failed, is wrong, or was the last one: ends the run, or takes note of a source's end. False: stop.
 bool settle(BlockRun& block, std::int32_t status);
 
 void set_count(BlockRun& block, std::int64_t count);
 
-/// Makes `count` firings in one call. False: the run is to end, Control knows why.
-inline bool fire(BlockRun& block, std::int64_t count, Lane& lane) {
+/// Makes `count` firings in one call; the streams stay where they are. False: the run is to end, Control knows why.
+inline bool fire_here(BlockRun& block, std::int64_t count, Lane& lane) {
   bf_process& process = block.process;
   const auto firings = static_cast<std::uint64_t>(count);
   if (block.count != count) set_count(block, count);
@@ -123,6 +126,15 @@ inline bool fire(BlockRun& block, std::int64_t count, Lane& lane) {
   if (status != BF_OK || block.fault || process.done != firings || block.control->stopping()) [[unlikely]]
     return settle(block, status);
   block.position += count;
+  return true;
+}
+
+/// As `fire_here`, and moves the streams on behind what was read and written.
+inline bool fire(BlockRun& block, std::int64_t count, Lane& lane) {
+  const std::int64_t before = block.position;
+  if (!fire_here(block, count, lane)) return false;
+  if (block.position - before != count) [[unlikely]]
+    return true;  // a source that ended: nobody reads on there
   for (bf_stream& stream : block.streams) stream.offset += stream.count;
   return true;
 }

@@ -52,7 +52,9 @@ bool PartitionRun::run_call(Op& op, const Chunk& chunk) {
   if (count <= 0) return true;
   begin_chunk(block, chunk);
   const bool limited = run->options.call_limit > 0;
-  return chunk.timed ? advance_timed(block, count, limited, lane) : advance(block, count, limited, lane);
+  const bool go_on = chunk.timed ? advance_timed(block, count, limited, lane) : advance(block, count, limited, lane);
+  rewind(block);
+  return go_on;
 }
 
 bool PartitionRun::run_cluster(Op& op, const Chunk& chunk) {

@@ -231,6 +231,19 @@ tl::expected<void, std::string> add_dependencies(Run& run) {
   return {};
 }
 
+/// Calls that may go the short way: their streams stand at a chunk's start whenever none is under way.
+void mark_plain(Run& run) {
+  for (const auto& partition : run.partitions)
+    for (Op& op : partition->ops) {
+      const bool alone = op.dependencies.empty() && op.recorded.empty() && !op.followed;
+      if (op.kind != plan::Step::Kind::call || !alone || run.options.call_limit > 0) continue;
+      BlockRun& block = *op.block;
+      if (!block.has_streams() || block.takes_messages || block.rotates) continue;
+      rewind(block);
+      op.plain = &block;
+    }
+}
+
 }  // namespace
 
 std::int64_t op_of(const PartitionRun& partition, int block) {
@@ -274,7 +287,9 @@ tl::expected<void, std::string> compile(Run& run, const std::vector<std::unique_
       return Failed(fmt::format("plan: block '{}' has no step", run.name(block->index)));
   add_carried(run);
   if (auto added = add_dependencies(run); !added) return added;
-  return compile_messages(run, initial);
+  if (auto compiled = compile_messages(run, initial); !compiled) return compiled;
+  mark_plain(run);
+  return {};
 }
 
 }  // namespace bodeflow::execute

@@ -15,8 +15,10 @@ void PartitionRun::work() {
     chunk.end = run->chunking.end(chunk.index);
     chunk.timed = run->options.metrics && chunk.index % timing == 0;
     if (!pace(chunk) || !begin(chunk)) return;
-    for (std::size_t i = 0; i < ops.size(); ++i)
-      if (!run_op(ops[i], static_cast<std::int64_t>(i), chunk)) return;
+    for (std::size_t i = 0; i < ops.size(); ++i) {
+      const bool plain = ops[i].plain != nullptr && !chunk.timed && whole(chunk);
+      if (!(plain ? run_plain(*ops[i].plain, chunk) : run_op(ops[i], static_cast<std::int64_t>(i), chunk))) return;
+    }
     periods_done.store(chunk.end, std::memory_order_relaxed);
     done.store((chunk.index + 1) * static_cast<std::int64_t>(ops.size()), std::memory_order_release);
     if (run->partitions.size() > 1) signal.raise();
@@ -60,6 +62,13 @@ bool PartitionRun::wait_for(const Dependency& dependency, const Chunk& chunk) {
   const std::int64_t needed = in_chunk * static_cast<std::int64_t>(other.ops.size()) + dependency.op + 1;
   const auto there = [&] { return other.done.load(std::memory_order_acquire) >= needed; };
   return there() || lane.wait(run->control, other.signal, dependency.kind, dependency.waiting, dependency.for_block, there);
+}
+
+/// What run_op comes to for a plain op in a whole chunk.
+bool PartitionRun::run_plain(BlockRun& block, const Chunk& chunk) {
+  if (!fire_here(block, chunk.end * block.per_repetition - block.position, lane)) return false;
+  block.reached.store(block.position, std::memory_order_relaxed);
+  return true;
 }
 
 bool PartitionRun::run_op(Op& op, std::int64_t op_index, const Chunk& chunk) {

@@ -44,6 +44,7 @@ struct Turn {
 };
 
 struct Op {
+  BlockRun* plain = nullptr;  ///< a call without records, recording or other threads: its streams stand at the chunk's start
   plan::Step::Kind kind = plan::Step::Kind::call;
   BlockRun* block = nullptr;  ///< call
   std::vector<Turn> turns;    ///< cluster: one pass
@@ -87,6 +88,7 @@ struct PartitionRun {
   bool pace(const Chunk& chunk);
   bool wait_for(const Dependency& dependency, const Chunk& chunk);
   bool run_op(Op& op, std::int64_t op_index, const Chunk& chunk);
+  bool run_plain(BlockRun& block, const Chunk& chunk);
   bool run_call(Op& op, const Chunk& chunk);
   bool run_cluster(Op& op, const Chunk& chunk);
   bool run_pass(Op& op, const Chunk& chunk, std::int64_t end, bool timed);

@@ -260,6 +260,7 @@ class Wiring {
     if (kinds.size() > 1) return ambiguous(left.choices.size() > 1 ? left : right, left.choices.size() > 1);
     keep(left, kinds.front());
     keep(right, kinds.front());
+    prefer_needed(right);
     if (left.choices.size() > 1) return ambiguous(left, true);
     return right.choices.size() > 1 ? ambiguous(right, false) : true;
   }
@@ -284,6 +285,13 @@ class Wiring {
 
   static void keep(Side& side, std::uint32_t kind) {
     std::erase_if(side.choices, [&](const auto* p) { return p->kind != kind; });
+  }
+
+  /// Of several inputs, the one that must be connected is meant where there is exactly one.
+  static void prefer_needed(Side& side) {
+    const auto needed = [](const auto* p) { return !p->optional; };
+    if (std::count_if(side.choices.begin(), side.choices.end(), needed) == 1)
+      std::erase_if(side.choices, [&](const auto* p) { return !needed(p); });
   }
 
   bool ambiguous(const Side& side, bool outputs) {

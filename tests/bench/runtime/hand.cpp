@@ -30,7 +30,7 @@ void multiply(std::size_t samples) {
   }
 }
 
-void copy_one(const double* x, double* y) { std::memcpy(y, x, sizeof *x); }
+void copy(const double* x, double* y, std::size_t count) { std::memcpy(y, x, count * sizeof *x); }
 
 }  // namespace
 
@@ -54,16 +54,17 @@ void hand_feedback(std::size_t samples) {
 }
 
 std::vector<double> hand_latency(std::size_t samples) {
-  using Block = void (*)(const double*, double*);
+  using Block = void (*)(const double*, double*, std::size_t);
   std::array<Block, 8> chain{};
-  chain.fill(copy_one);
-  keep(chain.data());
+  chain.fill(copy);
+  std::size_t count = 1;
+  asm volatile("" : "+m"(chain), "+r"(count));  // which function, and how many samples, is known only when it runs
   std::array<double, 9> signal{};
   std::vector<double> ages;
   ages.reserve(samples);
   for (std::size_t n = 0; n < samples; ++n) {
     signal[0] = now_ns();
-    for (std::size_t b = 0; b < chain.size(); ++b) chain[b](&signal[b], &signal[b + 1]);
+    for (std::size_t b = 0; b < chain.size(); ++b) chain[b](&signal[b], &signal[b + 1], count);
     ages.push_back(now_ns() - signal[8]);
   }
   return ages;

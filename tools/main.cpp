@@ -1,6 +1,6 @@
-#include "commands/command.hpp"
-
 #include <exception>
+
+#include "commands/command.hpp"
 
 int main(int argc, char** argv) {
   using namespace bodeflow::tools;
@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "bodeflow " BODEFLOW_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
-  app.add_option("--path", session.plugin_path, "A folder with plugins, before the usual ones")->type_name("DIR")->allow_extra_args(false);
+  app.add_option("--path", session.plugin_path, "A folder with plugins, before the usual ones")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
   add_run(app, session);
   add_check(app, session);
   add_plan(app, session);

@@ -42,7 +42,8 @@ void Gain::multiply(Io& io) const {
   for (int c = 0; c < io.channels(in); ++c) {
     const auto x = io.read<T>(in, c);
     const auto y = io.write<T>(out, c);
-    numerics::multiply(reinterpret_cast<const double*>(x.data()), gain_, reinterpret_cast<double*>(y.data()), kParts * x.size(), vector_level_);
+    numerics::multiply(reinterpret_cast<const double*>(x.data()), gain_, reinterpret_cast<double*>(y.data()), kParts * x.size(),
+                       vector_level_);
   }
 }
 

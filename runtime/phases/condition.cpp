@@ -1,8 +1,8 @@
 #include "phases/condition.hpp"
 
-#include <bodeflow/record.hpp>
-
 #include <fmt/format.h>
+
+#include <bodeflow/record.hpp>
 
 namespace bodeflow::phases {
 namespace {

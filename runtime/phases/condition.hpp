@@ -1,9 +1,9 @@
 #pragma once
 
+#include <tl/expected.hpp>
+
 #include "graph/graph.hpp"
 #include "plugins/instance.hpp"
-
-#include <tl/expected.hpp>
 
 namespace bodeflow::phases {
 

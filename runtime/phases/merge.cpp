@@ -1,9 +1,8 @@
-#include "phases/sweep.hpp"
-
 #include <bodeflow/record.hpp>
-
 #include <charconv>
 #include <complex>
+
+#include "phases/sweep.hpp"
 
 namespace bodeflow::phases {
 namespace {
@@ -32,18 +31,24 @@ void stack(RecordBuilder& merged, const std::vector<RecordView>& views, const Ar
 bool in_all(const std::vector<RecordView>& views, const ArrayView& first) {
   return std::all_of(views.begin(), views.end(), [&](const RecordView& view) {
     const auto array = view.array(first.name);
-    return array && array->element == first.element && std::equal(array->shape.begin(), array->shape.end(), first.shape.begin(), first.shape.end());
+    return array && array->element == first.element &&
+           std::equal(array->shape.begin(), array->shape.end(), first.shape.begin(), first.shape.end());
   });
 }
 
 void stack_array(RecordBuilder& merged, const std::vector<RecordView>& views, const ArrayView& first) {
   if (first.shape.size() >= kRecordMaxRank || !in_all(views, first)) return;
   switch (first.element) {
-    case BF_F64: return stack<double>(merged, views, first);
-    case BF_C64: return stack<std::complex<double>>(merged, views, first);
-    case BF_I64: return stack<std::int64_t>(merged, views, first);
-    case BF_U8: return stack<std::uint8_t>(merged, views, first);
-    default: return;
+    case BF_F64:
+      return stack<double>(merged, views, first);
+    case BF_C64:
+      return stack<std::complex<double>>(merged, views, first);
+    case BF_I64:
+      return stack<std::int64_t>(merged, views, first);
+    case BF_U8:
+      return stack<std::uint8_t>(merged, views, first);
+    default:
+      return;
   }
 }
 

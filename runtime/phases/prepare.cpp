@@ -2,8 +2,8 @@
 
 namespace bodeflow::phases {
 
-tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& registry, std::shared_ptr<const HostServices> services,
-                                         const PlanSettings& settings) {
+tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& registry,
+                                         std::shared_ptr<const HostServices> services, const PlanSettings& settings) {
   auto instances = plan::instantiate(phase, registry, std::move(services));
   if (!instances) return tl::unexpected(instances.error());
   auto facts = plan::establish_facts(phase, *instances);

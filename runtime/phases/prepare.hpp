@@ -1,10 +1,10 @@
 #pragma once
 
-#include "plan/plan.hpp"
-
 #include <memory>
 #include <optional>
 #include <vector>
+
+#include "plan/plan.hpp"
 
 namespace bodeflow::phases {
 
@@ -22,7 +22,7 @@ struct PlanSettings {
 };
 
 /// The prepared phase: blocks made, facts established, plan made. Errors are those of these three steps, the first that has any.
-tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& registry, std::shared_ptr<const HostServices> services,
-                                         const PlanSettings& settings);
+tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& registry,
+                                         std::shared_ptr<const HostServices> services, const PlanSettings& settings);
 
 }  // namespace bodeflow::phases

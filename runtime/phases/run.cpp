@@ -1,9 +1,9 @@
 #include "phases/run.hpp"
 
+#include <fmt/format.h>
+
 #include "phases/condition.hpp"
 #include "phases/sweep.hpp"
-
-#include <fmt/format.h>
 
 namespace bodeflow::phases {
 namespace {
@@ -16,7 +16,8 @@ RunResult rejection(const graph::Phase& phase, Problems problems) {
   return {RunResult::Status::rejected, phase.name, "", to_string(problems), std::move(problems), false};
 }
 
-tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(const graph::Phase& phase, const record::RunDirectory& directory) {
+tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(const graph::Phase& phase,
+                                                                            const record::RunDirectory& directory) {
   std::vector<execute::InitialRecord> records;
   Problems problems;
   for (const auto& reference : phase.references) {
@@ -24,14 +25,15 @@ tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(cons
     if (record)
       records.push_back({reference.to, std::move(record)});
     else
-      problems.push_back({reference.place, fmt::format("'${}.{}.{}': that phase sent no such record", reference.phase, reference.block,
-                                                       reference.port)});
+      problems.push_back({reference.place, fmt::format("'${}.{}.{}': that phase sent no such record", reference.phase,
+                                                       reference.block, reference.port)});
   }
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return records;
 }
 
-RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDirectory& directory, const RunOptions& options, int repeat) {
+RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDirectory& directory, const RunOptions& options,
+                   int repeat) {
   auto initial = initial_records(phase, directory);
   if (!initial) return rejection(phase, initial.error());
   const auto sink = directory.begin_phase(phase, prepared.facts, plan::to_json(phase, prepared.facts, prepared.plan), repeat);
@@ -74,8 +76,8 @@ tl::expected<bool, Problem> allowed(const std::optional<graph::Condition>& condi
 
 }  // namespace
 
-tl::expected<std::vector<Prepared>, Problems> prepare_all(const graph::Graph& graph, Registry& registry,
-                                                          const Services& services, const PlanSettings& settings) {
+tl::expected<std::vector<Prepared>, Problems> prepare_all(const graph::Graph& graph, Registry& registry, const Services& services,
+                                                          const PlanSettings& settings) {
   std::vector<Prepared> all;
   Problems problems;
   for (const auto& phase : graph.phases) {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "phases/prepare.hpp"
-#include "phases/services.hpp"
-
 #include <atomic>
 #include <filesystem>
 #include <functional>
+
+#include "phases/prepare.hpp"
+#include "phases/services.hpp"
 
 namespace bodeflow::phases {
 
@@ -20,16 +20,16 @@ struct RunOptions {
 struct RunResult {
   enum class Status { complete, rejected, failed, interrupted };
   Status status = Status::complete;
-  std::string phase;    ///< in which it ended
-  std::string block;    ///< whose error ended it; may be empty
+  std::string phase;  ///< in which it ended
+  std::string block;  ///< whose error ended it; may be empty
   std::string reason;
-  Problems problems;    ///< rejected: what is wrong with a phase, found when it was its turn
-  bool hung = false;    ///< a thread of a block could not be stopped: end the process without clean-up
+  Problems problems;  ///< rejected: what is wrong with a phase, found when it was its turn
+  bool hung = false;  ///< a thread of a block could not be stopped: end the process without clean-up
 };
 
 /// Prepares every phase once, so that all problems are known before anything runs.
-tl::expected<std::vector<Prepared>, Problems> prepare_all(const graph::Graph& graph, Registry& registry,
-                                                          const Services& services, const PlanSettings& settings);
+tl::expected<std::vector<Prepared>, Problems> prepare_all(const graph::Graph& graph, Registry& registry, const Services& services,
+                                                          const PlanSettings& settings);
 
 /// Runs the phases in order, with conditions, repeats and sweeps, into the directory. `prepared` is used up.
 RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registry& registry, record::RunDirectory& directory,

@@ -35,7 +35,8 @@ Services::Services(Echo echo) : state_(std::make_shared<State>()), host_(std::ma
     else
       state->inputs.emplace_back(block, path);
   };
-  host_->output_path = [state = state_](const std::string& block, const std::string& name) -> tl::expected<std::string, std::string> {
+  host_->output_path = [state = state_](const std::string& block,
+                                        const std::string& name) -> tl::expected<std::string, std::string> {
     const std::lock_guard lock(state->mutex);
     if (state->directory == nullptr) return std::string();
     return state->directory->output_path(block, name);

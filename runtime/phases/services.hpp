@@ -1,10 +1,10 @@
 #pragma once
 
-#include "plugins/instance.hpp"
-#include "record/run_directory.hpp"
-
 #include <functional>
 #include <memory>
+
+#include "plugins/instance.hpp"
+#include "record/run_directory.hpp"
 
 namespace bodeflow::phases {
 

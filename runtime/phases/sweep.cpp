@@ -1,11 +1,11 @@
 #include "phases/sweep.hpp"
 
-#include "graph/load.hpp"
-#include "phases/worker_pool.hpp"
-
 #include <fmt/format.h>
 
 #include <fstream>
+
+#include "graph/load.hpp"
+#include "phases/worker_pool.hpp"
 
 namespace bodeflow::phases {
 namespace {
@@ -53,12 +53,21 @@ void for_each_message_output(const graph::Phase& phase, Visit visit) {
       if (port.kind == BF_MESSAGE && port.direction == BF_OUT) visit(block.name, port.name);
 }
 
-std::vector<std::string> worker_arguments(const graph::Phase& phase, const record::RunDirectory& directory, const fs::path& folder,
-                                          const std::vector<std::string>& values, const RunOptions& options) {
-  std::vector<std::string> arguments{options.command.string(),    "phase-worker", "--graph", (directory.path() / "graph.yaml").string(),
-                                     "--phase",                   phase.name,     "--out",   folder.string(),
-                                     "--references",              (directory.path() / "sweep" / phase.name / "references").string(),
-                                     "--vector-level",            std::to_string(options.vector_level)};
+std::vector<std::string> worker_arguments(const graph::Phase& phase, const record::RunDirectory& directory,
+                                          const fs::path& folder, const std::vector<std::string>& values,
+                                          const RunOptions& options) {
+  std::vector<std::string> arguments{options.command.string(),
+                                     "phase-worker",
+                                     "--graph",
+                                     (directory.path() / "graph.yaml").string(),
+                                     "--phase",
+                                     phase.name,
+                                     "--out",
+                                     folder.string(),
+                                     "--references",
+                                     (directory.path() / "sweep" / phase.name / "references").string(),
+                                     "--vector-level",
+                                     std::to_string(options.vector_level)};
   for (std::size_t a = 0; a < values.size(); ++a) {
     const std::string& path = phase.sweep[a].path;
     if (path == "seed") {
@@ -83,7 +92,8 @@ RunResult run_sweep(const graph::Graph&, const graph::Phase& phase, record::RunD
   try {
     fs::create_directories(folder);
     for (const auto& r : phase.references)
-      write_record(record_file(folder / "references" / r.phase, r.block, r.port), directory.last_record(r.phase, r.block, r.port));
+      write_record(record_file(folder / "references" / r.phase, r.block, r.port),
+                   directory.last_record(r.phase, r.block, r.port));
   } catch (const std::exception& error) {
     return failed(phase, error.what());
   }
@@ -93,12 +103,10 @@ RunResult run_sweep(const graph::Graph&, const graph::Phase& phase, record::RunD
     commands.push_back(worker_arguments(phase, directory, folder / std::to_string(i), values[i], options));
   directory.event("sweep begins", {{"phase", phase.name}, {"runs", values.size()}});
   const PoolResult pool = run_processes(commands, options.stop, [&](std::size_t done) {
-    if (options.progress)
-      options.progress(phase.name, {static_cast<double>(done), static_cast<double>(commands.size()), 0.0});
+    if (options.progress) options.progress(phase.name, {static_cast<double>(done), static_cast<double>(commands.size()), 0.0});
   });
   if (pool.interrupted) return {RunResult::Status::interrupted, phase.name, "", "interrupted", {}, false};
-  if (pool.failed)
-    return failed(phase, fmt::format("run {} of the sweep failed: {}", *pool.failed, pool.message));
+  if (pool.failed) return failed(phase, fmt::format("run {} of the sweep failed: {}", *pool.failed, pool.message));
 
   for_each_message_output(phase, [&](const std::string& block, const std::string& port) {
     std::vector<SharedRecord> records;

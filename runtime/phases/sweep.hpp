@@ -7,7 +7,8 @@ namespace bodeflow::phases {
 /// Runs a phase once for every combination of its sweep's values (the first axis varies slowest), each in a worker process of
 /// its own, as many at a time as there are cores; merges the records in that order, so that the result does not depend on
 /// which worker ends first. The runs' own directories lie below `sweep/<phase>/<index>`.
-RunResult run_sweep(const graph::Graph& graph, const graph::Phase& phase, record::RunDirectory& directory, const RunOptions& options);
+RunResult run_sweep(const graph::Graph& graph, const graph::Phase& phase, record::RunDirectory& directory,
+                    const RunOptions& options);
 
 /// One run of a sweep, in the worker process: what `phase-worker` was asked for.
 struct WorkerTask {
@@ -15,8 +16,8 @@ struct WorkerTask {
   std::string phase;
   std::vector<std::pair<std::string, std::string>> overrides;
   std::optional<std::uint64_t> seed;
-  std::filesystem::path directory;  ///< of this run
-  std::filesystem::path references; ///< folder with the records of earlier phases
+  std::filesystem::path directory;   ///< of this run
+  std::filesystem::path references;  ///< folder with the records of earlier phases
 };
 
 /// Runs it; the message outputs' last records stand in `directory/records` afterwards.

@@ -12,7 +12,8 @@ namespace {
 }
 
 #if defined(__x86_64__)
-[[gnu::target("arch=x86-64-v4,prefer-vector-width=512")]] void multiply_v4(const double* x, double gain, double* y, size_t count) {
+[[gnu::target("arch=x86-64-v4,prefer-vector-width=512")]] void multiply_v4(const double* x, double gain, double* y,
+                                                                           size_t count) {
   multiply_all(x, gain, y, count);
 }
 [[gnu::target("arch=x86-64-v3")]] void multiply_v3(const double* x, double gain, double* y, size_t count) {

@@ -1,10 +1,10 @@
 // The graph loader on arbitrary texts: no crash, no endless loop, and what it accepts expands to a text that loads to the same.
 // Lines `--set PATH=VALUE` at the beginning are overrides.
-#include "registry.hpp"
-
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+
+#include "registry.hpp"
 
 using namespace bodeflow::graph;
 
@@ -38,7 +38,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!again || again->expanded != graph->expanded || again->phases.size() != graph->phases.size()) std::abort();
   for (std::size_t i = 0; i < graph->phases.size(); ++i) {
     const auto &a = graph->phases[i], &b = again->phases[i];
-    if (a.blocks.size() != b.blocks.size() || a.streams.size() != b.streams.size() || a.messages.size() != b.messages.size()) std::abort();
+    if (a.blocks.size() != b.blocks.size() || a.streams.size() != b.streams.size() || a.messages.size() != b.messages.size())
+      std::abort();
     for (std::size_t k = 0; k < a.blocks.size(); ++k)
       if (a.blocks[k].parameters != b.blocks[k].parameters) std::abort();
   }

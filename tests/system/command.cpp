@@ -31,7 +31,8 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
 
 }  // namespace
 
-Ended run_program(const std::vector<std::string>& command, const std::filesystem::path& folder, const std::vector<std::string>& environment) {
+Ended run_program(const std::vector<std::string>& command, const std::filesystem::path& folder,
+                  const std::vector<std::string>& environment) {
   const Folder work;
   const std::string out = (work.path() / "out").string(), err = (work.path() / "err").string();
   std::vector<std::string> words = command, variables = environment;
@@ -52,7 +53,8 @@ Ended run_program(const std::vector<std::string>& command, const std::filesystem
   return {WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), slurp(out), slurp(err)};
 }
 
-Ended run_bodeflow(const std::vector<std::string>& arguments, const std::filesystem::path& folder, const std::vector<std::string>& environment) {
+Ended run_bodeflow(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                   const std::vector<std::string>& environment) {
   std::vector<std::string> command{BODEFLOW_BUILD_DIR "/bin/bodeflow"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run_program(command, folder, environment);

@@ -14,7 +14,7 @@ struct Ended {
 
 /// Runs the built command as a user does, in a folder, and gives what it printed. `environment` adds to our own.
 Ended run_bodeflow(const std::vector<std::string>& arguments, const std::filesystem::path& folder = ".",
-               const std::vector<std::string>& environment = {});
+                   const std::vector<std::string>& environment = {});
 
 /// Runs any program.
 Ended run_program(const std::vector<std::string>& command, const std::filesystem::path& folder = ".",

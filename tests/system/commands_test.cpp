@@ -1,10 +1,10 @@
+#include <nlohmann/json.hpp>
+
 #include "catch.hpp"
 #include "system/command.hpp"
 
-#include <nlohmann/json.hpp>
-
-using bodeflow::test::run_bodeflow;
 using bodeflow::test::Folder;
+using bodeflow::test::run_bodeflow;
 using Catch::Matchers::Contains;
 
 namespace {
@@ -91,7 +91,8 @@ TEST_CASE("expand prints one file that runs to the same plan") {
   REQUIRE(expanded.exit_code == 0);
   CHECK_THAT(expanded.out, Contains("gain: 3"));
   folder.write("expanded.yaml", expanded.out);
-  CHECK(run_bodeflow({"plan", "expanded.yaml", "--json"}, folder.path()).out == run_bodeflow({"plan", "chain.yaml", "--json"}, folder.path()).out);
+  CHECK(run_bodeflow({"plan", "expanded.yaml", "--json"}, folder.path()).out ==
+        run_bodeflow({"plan", "chain.yaml", "--json"}, folder.path()).out);
 }
 
 TEST_CASE("plugins lists the families, describe tells a block's ports and parameters, and names the nearest for a wrong id") {
@@ -127,7 +128,8 @@ TEST_CASE("the bash completion is a script that bash accepts and that completes 
   const Folder folder;
   folder.write("completion", run_bodeflow({"completion", "bash"}).out);
   const auto ended = bodeflow::test::run_program(
-      {"bash", "-c", "source completion; COMP_WORDS=(bodeflow re); COMP_CWORD=1; _bodeflow; echo ${COMPREPLY[@]}"}, folder.path());
+      {"bash", "-c", "source completion; COMP_WORDS=(bodeflow re); COMP_CWORD=1; _bodeflow; echo ${COMPREPLY[@]}"},
+      folder.path());
   CHECK(ended.exit_code == 0);
   CHECK(ended.out == "rerun\n");
 }

@@ -1,17 +1,18 @@
+#include <nlohmann/json.hpp>
+
 #include "catch.hpp"
 #include "system/command.hpp"
 
-#include <nlohmann/json.hpp>
-
-using bodeflow::test::run_bodeflow;
 using bodeflow::test::Folder;
+using bodeflow::test::run_bodeflow;
 
 namespace {
 
 /// The hashes of every output and record of a run.
 nlohmann::json hashes(const Folder& folder, const std::string& graph, const std::string& chunk, const std::string& threads) {
   const std::string out = "out-" + chunk + "-" + threads;
-  const auto ended = run_bodeflow({"run", graph, "--set", "run.chunk=" + chunk, "--threads", threads, "--out", out}, folder.path());
+  const auto ended =
+      run_bodeflow({"run", graph, "--set", "run.chunk=" + chunk, "--threads", threads, "--out", out}, folder.path());
   INFO(ended.err);
   REQUIRE(ended.exit_code == 0);
   return nlohmann::json::parse(folder.read(out + "/manifest.json"))["hashes"];
@@ -35,7 +36,15 @@ void require_identity(const std::string& graph) {
 
 }  // namespace
 
-TEST_CASE("every output of a loop-free graph is the same for any chunk and thread count") { require_identity("frequency_response.yaml"); }
-TEST_CASE("every output of a feedback loop is the same for any chunk and thread count") { require_identity("feedback_loop.yaml"); }
-TEST_CASE("every output of a cascaded loop is the same for any chunk and thread count") { require_identity("cascaded_loop.yaml"); }
-TEST_CASE("every output of a graph with live changes is the same for any chunk and thread count") { require_identity("live_change.yaml"); }
+TEST_CASE("every output of a loop-free graph is the same for any chunk and thread count") {
+  require_identity("frequency_response.yaml");
+}
+TEST_CASE("every output of a feedback loop is the same for any chunk and thread count") {
+  require_identity("feedback_loop.yaml");
+}
+TEST_CASE("every output of a cascaded loop is the same for any chunk and thread count") {
+  require_identity("cascaded_loop.yaml");
+}
+TEST_CASE("every output of a graph with live changes is the same for any chunk and thread count") {
+  require_identity("live_change.yaml");
+}

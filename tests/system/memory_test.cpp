@@ -1,14 +1,14 @@
 // The bytes that a run really takes for its buffers and rings, counted in place of the C library, against the plan's figure.
 
-#include "catch.hpp"
-#include "execute/execute.hpp"
-#include "graph/load.hpp"
-#include "phases/prepare.hpp"
-
 #include <fmt/format.h>
 #include <malloc.h>
 
 #include <atomic>
+
+#include "catch.hpp"
+#include "execute/execute.hpp"
+#include "graph/load.hpp"
+#include "phases/prepare.hpp"
 
 namespace {
 
@@ -77,4 +77,6 @@ void require_planned_bytes(int threads) {
 }  // namespace
 
 TEST_CASE("the bytes of buffers that a 500-block run takes are those of its plan, on one thread") { require_planned_bytes(1); }
-TEST_CASE("the bytes of buffers and rings that a 500-block run takes are those of its plan, on four threads") { require_planned_bytes(4); }
+TEST_CASE("the bytes of buffers and rings that a 500-block run takes are those of its plan, on four threads") {
+  require_planned_bytes(4);
+}

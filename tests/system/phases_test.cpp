@@ -1,10 +1,10 @@
+#include <nlohmann/json.hpp>
+
 #include "catch.hpp"
 #include "system/command.hpp"
 
-#include <nlohmann/json.hpp>
-
-using bodeflow::test::run_bodeflow;
 using bodeflow::test::Folder;
+using bodeflow::test::run_bodeflow;
 using Catch::Matchers::Contains;
 
 namespace {
@@ -14,7 +14,8 @@ std::string measurement(const std::string& name, const std::string& more) {
   return "  - name: " + name +
          "\n    run: {duration: 0.08 s}\n"
          "    blocks:\n"
-         "      excitation: {block: generators.multisine, sample_rate: 10 kHz, period: 100, lines: {first: 1, last: 9, step: 2}}\n"
+         "      excitation: {block: generators.multisine, sample_rate: 10 kHz, period: 100, lines: {first: 1, last: 9, step: "
+         "2}}\n"
          "      twice: {block: filters.gain, gain: 2}\n"
          "      noise: {block: generators.noise, sample_rate: 10 kHz, std: 0.01}\n"
          "      sum: {block: filters.sum}\n"
@@ -74,7 +75,8 @@ TEST_CASE("a sweep over a parameter gives each run its value") {
 
 TEST_CASE("a phase repeats until its condition holds, at most as often as it says") {
   const Folder folder;
-  const auto all = results(folder, "bodeflow: 1\nphases:\n" + measurement("again", "    repeat: {max: 3, until: $again.dft.periods > 100}\n"));
+  const auto all =
+      results(folder, "bodeflow: 1\nphases:\n" + measurement("again", "    repeat: {max: 3, until: $again.dft.periods > 100}\n"));
   CHECK(all.contains("again.dft"));
   CHECK_THAT(folder.read("out/events.jsonl"), Contains("again"));
 }

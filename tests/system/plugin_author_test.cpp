@@ -1,8 +1,8 @@
 #include "catch.hpp"
 #include "system/command.hpp"
 
-using bodeflow::test::run_bodeflow;
 using bodeflow::test::Folder;
+using bodeflow::test::run_bodeflow;
 using bodeflow::test::run_program;
 using Catch::Matchers::Contains;
 

@@ -1,12 +1,11 @@
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "catch.hpp"
 #include "system/command.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include <fstream>
-
-using bodeflow::test::run_bodeflow;
 using bodeflow::test::Folder;
+using bodeflow::test::run_bodeflow;
 using bodeflow::test::run_program;
 using Catch::Matchers::Contains;
 
@@ -62,7 +61,8 @@ TEST_CASE("--dry-run shows the plan and makes nothing") {
 TEST_CASE("--for sets the duration, --set a parameter, --json prints the results alone") {
   const Folder folder;
   folder.write("tone.yaml", kTone);
-  const auto ended = run_bodeflow({"run", "tone.yaml", "--out", "out", "--for", "0.5 ms", "--set", "twice.gain=10", "--json"}, folder.path());
+  const auto ended =
+      run_bodeflow({"run", "tone.yaml", "--out", "out", "--for", "0.5 ms", "--set", "twice.gain=10", "--json"}, folder.path());
   REQUIRE(ended.exit_code == 0);
   CHECK(nlohmann::json::parse(ended.out)["status"] == "complete");
   const std::string table = folder.read("out/tone.csv");
@@ -86,7 +86,8 @@ TEST_CASE("the seed of the command line changes the noise, the same seed repeats
   folder.write("noise.yaml",
                "bodeflow: 1\nrun: {duration: 10 ms}\nblocks:\n  noise: {block: generators.noise, sample_rate: 10 kHz}\n"
                "  table: {block: output.csv, file: noise.csv}\nconnections:\n  - noise -> table\n");
-  for (const char* out : {"a", "b"}) REQUIRE(run_bodeflow({"run", "noise.yaml", "--seed", "7", "--out", out}, folder.path()).exit_code == 0);
+  for (const char* out : {"a", "b"})
+    REQUIRE(run_bodeflow({"run", "noise.yaml", "--seed", "7", "--out", out}, folder.path()).exit_code == 0);
   REQUIRE(run_bodeflow({"run", "noise.yaml", "--seed", "8", "--out", "c"}, folder.path()).exit_code == 0);
   CHECK(folder.read("a/noise.csv") == folder.read("b/noise.csv"));
   CHECK(folder.read("a/noise.csv") != folder.read("c/noise.csv"));
@@ -94,12 +95,14 @@ TEST_CASE("the seed of the command line changes the noise, the same seed repeats
 
 TEST_CASE("Ctrl-C ends a run as partial, with what was recorded, and exit code 130") {
   const Folder folder;
-  folder.write("endless.yaml",
-               "bodeflow: 1\nrun: {duration: 1000 s, clock: realtime}\nblocks:\n"
-               "  tone: {block: generators.sine, sample_rate: 10 kHz, frequency: 100 Hz}\n  twice: {block: filters.gain, gain: 2}\n"
-               "  table: {block: output.csv, file: tone.csv}\n"
-               "connections:\n  - tone -> twice -> table\nrecord: [twice]\n");
-  const auto ended = run_program({"timeout", "--preserve-status", "-s", "INT", "1.5", BODEFLOW_BUILD_DIR "/bin/bodeflow", "run", "endless.yaml", "--out", "out"},
+  folder.write(
+      "endless.yaml",
+      "bodeflow: 1\nrun: {duration: 1000 s, clock: realtime}\nblocks:\n"
+      "  tone: {block: generators.sine, sample_rate: 10 kHz, frequency: 100 Hz}\n  twice: {block: filters.gain, gain: 2}\n"
+      "  table: {block: output.csv, file: tone.csv}\n"
+      "connections:\n  - tone -> twice -> table\nrecord: [twice]\n");
+  const auto ended = run_program({"timeout", "--preserve-status", "-s", "INT", "1.5", BODEFLOW_BUILD_DIR "/bin/bodeflow", "run",
+                                  "endless.yaml", "--out", "out"},
                                  folder.path());
   CHECK(ended.exit_code == 130);
   CHECK_THAT(ended.err, Contains("interrupted"));
@@ -112,8 +115,11 @@ TEST_CASE("rerun repeats a run bit for bit, and tells when it does not") {
   const Folder folder;
   folder.write("noise.yaml",
                "bodeflow: 1\nrun: {duration: 1 s, seed: 3}\nblocks:\n  noise: {block: generators.noise, sample_rate: 10 kHz}\n"
-               "  twice: {block: filters.gain, gain: 2}\n  table: {block: output.csv, file: noise.csv}\nconnections:\n  - noise -> twice -> table\nrecord: all\n");
-  REQUIRE(run_bodeflow({"run", "noise.yaml", "--out", "first", "--seed", "11", "--set", "twice.gain=3"}, folder.path()).exit_code == 0);
+               "  twice: {block: filters.gain, gain: 2}\n  table: {block: output.csv, file: noise.csv}\nconnections:\n  - noise "
+               "-> twice -> table\nrecord: all\n");
+  REQUIRE(
+      run_bodeflow({"run", "noise.yaml", "--out", "first", "--seed", "11", "--set", "twice.gain=3"}, folder.path()).exit_code ==
+      0);
   const auto again = run_bodeflow({"rerun", "first", "--out", "second"}, folder.path());
   INFO(again.err);
   CHECK(again.exit_code == 0);
@@ -130,9 +136,10 @@ TEST_CASE("rerun repeats a run bit for bit, and tells when it does not") {
 
 TEST_CASE("a block that writes outside the run directory is refused with its name") {
   const Folder folder;
-  folder.write("escape.yaml",
-               "bodeflow: 1\nrun: {duration: 1 ms}\nblocks:\n  tone: {block: generators.sine, sample_rate: 10 kHz, frequency: 100 Hz}\n"
-               "  table: {block: output.csv, file: ../tone.csv}\nconnections:\n  - tone -> table\n");
+  folder.write(
+      "escape.yaml",
+      "bodeflow: 1\nrun: {duration: 1 ms}\nblocks:\n  tone: {block: generators.sine, sample_rate: 10 kHz, frequency: 100 Hz}\n"
+      "  table: {block: output.csv, file: ../tone.csv}\nconnections:\n  - tone -> table\n");
   const auto ended = run_bodeflow({"run", "escape.yaml", "--out", "out"}, folder.path());
   CHECK(ended.exit_code == 1);
   CHECK_THAT(ended.err, Contains("block 'table'"));

@@ -1,8 +1,9 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
 #include "commands/command.hpp"
 #include "phases/run.hpp"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace bodeflow::tools {
 namespace {
@@ -28,8 +29,9 @@ int check(const Session& session, const GraphOptions& options, bool as_json) {
                       {"connections", phase.streams.size() + phase.messages.size()},
                       {"warnings", (*prepared)[i].facts.warnings}});
     if (!as_json)
-      fmt::print("{}{}: {} blocks, {} connections, right\n", options.file, phase.name.empty() ? "" : ", phase '" + phase.name + "'",
-                 phase.blocks.size(), phase.streams.size() + phase.messages.size());
+      fmt::print("{}{}: {} blocks, {} connections, right\n", options.file,
+                 phase.name.empty() ? "" : ", phase '" + phase.name + "'", phase.blocks.size(),
+                 phase.streams.size() + phase.messages.size());
   }
   if (as_json) fmt::print("{}\n", nlohmann::ordered_json{{"graph", options.file}, {"phases", phases}}.dump(2));
   return kDone;
@@ -43,7 +45,8 @@ void add_check(CLI::App& app, Session& session) {
   auto json = std::make_shared<bool>(false);
   options->add_to(*command);
   command->add_flag("--json", *json, "Print JSON");
-  command->callback([&session, options, json] { session.action = [&session, options, json] { return check(session, *options, *json); }; });
+  command->callback(
+      [&session, options, json] { session.action = [&session, options, json] { return check(session, *options, *json); }; });
 }
 
 }  // namespace bodeflow::tools

@@ -27,7 +27,9 @@ Registry Session::open_registry() const {
 
 void GraphOptions::add_to(CLI::App& app) {
   app.add_option("graph", file, "The graph: a YAML file")->required();
-  app.add_option("--set", sets, "PATH=VALUE: a variable, block.parameter, or a path in the file")->type_name("PATH=VALUE")->allow_extra_args(false);
+  app.add_option("--set", sets, "PATH=VALUE: a variable, block.parameter, or a path in the file")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
   app.add_option("--seed", seed, "Seed of all random numbers, or 'random'")->type_name("N|random");
   app.add_option("--for", duration, "Duration of the run, such as '10 s'")->type_name("DURATION");
 }

@@ -1,23 +1,22 @@
 #pragma once
 
-#include "console/console.hpp"
-#include "graph/load.hpp"
-#include "plugins/registry.hpp"
-
 #include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "console/console.hpp"
+#include "graph/load.hpp"
+#include "plugins/registry.hpp"
+
 namespace bodeflow::tools {
 
 /// What all commands share: where the plugins are, and which command was chosen.
 struct Session {
-  std::filesystem::path executable;                 ///< our own file
-  std::vector<std::string> plugin_path;             ///< --path, before the default places
-  std::function<int()> action;                      ///< of the command that was given
+  std::filesystem::path executable;      ///< our own file
+  std::vector<std::string> plugin_path;  ///< --path, before the default places
+  std::function<int()> action;           ///< of the command that was given
 
   Registry open_registry() const;
 };

@@ -1,6 +1,6 @@
-#include "commands/command.hpp"
-
 #include <fmt/format.h>
+
+#include "commands/command.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -31,12 +31,18 @@ std::string names_of(const std::vector<Words>& commands) {
 }
 
 std::string bash_script(const std::vector<Words>& commands) {
-  std::string text = "_bodeflow() {\n  local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]}\n  COMPREPLY=()\n  if [ \"$COMP_CWORD\" -eq 1 ]; then\n";
-  text += fmt::format("    COMPREPLY=($(compgen -W \"{}\" -- \"$word\"))\n    return\n  fi\n  case $command in\n", names_of(commands));
+  std::string text =
+      "_bodeflow() {\n  local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]}\n  COMPREPLY=()\n  if [ \"$COMP_CWORD\" "
+      "-eq 1 ]; then\n";
+  text += fmt::format("    COMPREPLY=($(compgen -W \"{}\" -- \"$word\"))\n    return\n  fi\n  case $command in\n",
+                      names_of(commands));
   for (const auto& command : commands)
-    text += fmt::format("    {}) [[ $word == -* ]] && COMPREPLY=($(compgen -W \"{}\" -- \"$word\")) ;;\n", command.name, fmt::join(command.options, " "));
+    text += fmt::format("    {}) [[ $word == -* ]] && COMPREPLY=($(compgen -W \"{}\" -- \"$word\")) ;;\n", command.name,
+                        fmt::join(command.options, " "));
   text += "  esac\n  if [ \"$command\" = describe ] && [[ $word != -* ]]; then\n";
-  text += "    COMPREPLY=($(compgen -W \"$(bodeflow plugins 2>/dev/null | awk '/^  /{print $1}')\" -- \"$word\"))\n    return\n  fi\n";
+  text +=
+      "    COMPREPLY=($(compgen -W \"$(bodeflow plugins 2>/dev/null | awk '/^  /{print $1}')\" -- \"$word\"))\n    return\n  "
+      "fi\n";
   text += "  [ ${#COMPREPLY[@]} -eq 0 ] && [[ $word != -* ]] && COMPREPLY=($(compgen -f -- \"$word\"))\n}\n";
   return text + "complete -o filenames -F _bodeflow bodeflow\n";
 }
@@ -53,7 +59,8 @@ std::string zsh_script(const std::vector<Words>& commands) {
   text += "  )\n  if (( CURRENT == 2 )); then\n    _describe command commands\n    return\n  fi\n  case $words[2] in\n";
   text += "    describe) compadd -- $(bodeflow plugins 2>/dev/null | awk '/^  /{print $1}') ;;\n  esac\n  case $words[2] in\n";
   for (const auto& command : commands)
-    text += fmt::format("    {}) [[ $words[CURRENT] == -* ]] && compadd -- {} || _files ;;\n", command.name, fmt::join(command.options, " "));
+    text += fmt::format("    {}) [[ $words[CURRENT] == -* ]] && compadd -- {} || _files ;;\n", command.name,
+                        fmt::join(command.options, " "));
   return text + "  esac\n}\ncompdef _bodeflow bodeflow\n";
 }
 
@@ -66,7 +73,9 @@ std::string fish_script(const std::vector<Words>& commands) {
     for (const auto& option : command.options)
       text += fmt::format("complete -c bodeflow -n '__fish_seen_subcommand_from {}' -l {}\n", command.name, option.substr(2));
   }
-  return text + "complete -c bodeflow -n '__fish_seen_subcommand_from describe' -f -a \"(bodeflow plugins 2>/dev/null | awk '/^  /{print \\$1}')\"\n";
+  return text +
+         "complete -c bodeflow -n '__fish_seen_subcommand_from describe' -f -a \"(bodeflow plugins 2>/dev/null | awk '/^  "
+         "/{print \\$1}')\"\n";
 }
 
 }  // namespace

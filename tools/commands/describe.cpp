@@ -1,27 +1,39 @@
-#include "commands/command.hpp"
-#include "plugins/description_json.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
+
+#include "commands/command.hpp"
+#include "plugins/description_json.hpp"
 
 namespace bodeflow::tools {
 namespace {
 
 std::string type_name(const ParameterDescription& parameter) {
   switch (parameter.type) {
-    case BF_BOOL: return "true or false";
-    case BF_INTEGER: return "integer";
-    case BF_NUMBER: return "number";
-    case BF_STRING: return "text";
-    case BF_CHOICE: return fmt::format("{}", fmt::join(parameter.choices, " | "));
-    case BF_FILE: return "file";
-    case BF_NUMBERS: return "list of numbers";
-    case BF_INTEGERS: return "list of integers";
-    case BF_STRINGS: return "list of texts";
-    case BF_COMPLEX_LIST: return "list of complex numbers";
-    case BF_MATRIX: return "matrix";
-    default: return "value";
+    case BF_BOOL:
+      return "true or false";
+    case BF_INTEGER:
+      return "integer";
+    case BF_NUMBER:
+      return "number";
+    case BF_STRING:
+      return "text";
+    case BF_CHOICE:
+      return fmt::format("{}", fmt::join(parameter.choices, " | "));
+    case BF_FILE:
+      return "file";
+    case BF_NUMBERS:
+      return "list of numbers";
+    case BF_INTEGERS:
+      return "list of integers";
+    case BF_STRINGS:
+      return "list of texts";
+    case BF_COMPLEX_LIST:
+      return "list of complex numbers";
+    case BF_MATRIX:
+      return "matrix";
+    default:
+      return "value";
   }
 }
 
@@ -30,31 +42,43 @@ std::string default_text(const ParameterDescription& parameter) {
   if (parameter.required) return "required";
   if (value.rows == 0) return "optional";
   switch (parameter.type) {
-    case BF_BOOL: return value.integer != 0 ? "true" : "false";
-    case BF_INTEGER: return std::to_string(value.integer);
-    case BF_NUMBER: return fmt::format("{}", value.numbers.at(0));
+    case BF_BOOL:
+      return value.integer != 0 ? "true" : "false";
+    case BF_INTEGER:
+      return std::to_string(value.integer);
+    case BF_NUMBER:
+      return fmt::format("{}", value.numbers.at(0));
     case BF_STRING:
     case BF_CHOICE:
-    case BF_FILE: return value.strings.at(0).empty() ? "''" : value.strings.at(0);
-    case BF_NUMBERS: return fmt::format("[{}]", fmt::join(value.numbers, ", "));
-    case BF_INTEGERS: return fmt::format("[{}]", fmt::join(value.integers, ", "));
-    case BF_STRINGS: return fmt::format("[{}]", fmt::join(value.strings, ", "));
-    default: return "given";
+    case BF_FILE:
+      return value.strings.at(0).empty() ? "''" : value.strings.at(0);
+    case BF_NUMBERS:
+      return fmt::format("[{}]", fmt::join(value.numbers, ", "));
+    case BF_INTEGERS:
+      return fmt::format("[{}]", fmt::join(value.integers, ", "));
+    case BF_STRINGS:
+      return fmt::format("[{}]", fmt::join(value.strings, ", "));
+    default:
+      return "given";
   }
 }
 
 std::string range_text(const ParameterDescription& parameter) {
   const bool low = std::isfinite(parameter.minimum), high = std::isfinite(parameter.maximum);
   if (!low && !high) return "";
-  return fmt::format(", {}{}, {}{}", low && !parameter.exclusive_minimum ? "[" : "(", low ? fmt::format("{}", parameter.minimum) : "-inf",
-                     high ? fmt::format("{}", parameter.maximum) : "inf", high && !parameter.exclusive_maximum ? "]" : ")");
+  return fmt::format(", {}{}, {}{}", low && !parameter.exclusive_minimum ? "[" : "(",
+                     low ? fmt::format("{}", parameter.minimum) : "-inf", high ? fmt::format("{}", parameter.maximum) : "inf",
+                     high && !parameter.exclusive_maximum ? "]" : ")");
 }
 
 void print_ports(const BlockDescription& block) {
   for (const auto& port : block.ports) {
-    const std::string kind = port.kind == BF_STREAM ? (port.element == BF_C64 ? "complex stream" : port.element == BF_F64 ? "stream" : "any stream")
+    const std::string kind = port.kind == BF_STREAM ? (port.element == BF_C64   ? "complex stream"
+                                                       : port.element == BF_F64 ? "stream"
+                                                                                : "any stream")
                                                     : "record" + (port.record_type.empty() ? "" : " " + port.record_type);
-    fmt::print("  {:<4} {:<16} {}{}  {}\n", port.direction == BF_IN ? "in" : "out", port.name, kind, port.optional ? ", optional" : "", port.doc);
+    fmt::print("  {:<4} {:<16} {}{}  {}\n", port.direction == BF_IN ? "in" : "out", port.name, kind,
+               port.optional ? ", optional" : "", port.doc);
   }
 }
 
@@ -65,8 +89,9 @@ void print(const BlockDescription& block, const PluginDescription& plugin) {
   print_ports(block);
   if (!block.parameters.empty()) fmt::print("\n{}\n", bold("Parameters"));
   for (const auto& parameter : block.parameters) {
-    fmt::print("  {:<16} {}{}{}; {}{}\n", parameter.name, type_name(parameter), parameter.unit.empty() ? "" : " [" + parameter.unit + "]",
-               range_text(parameter), default_text(parameter), parameter.live ? "; live" : "");
+    fmt::print("  {:<16} {}{}{}; {}{}\n", parameter.name, type_name(parameter),
+               parameter.unit.empty() ? "" : " [" + parameter.unit + "]", range_text(parameter), default_text(parameter),
+               parameter.live ? "; live" : "");
     if (!parameter.doc.empty()) fmt::print("  {:<16} {}\n", "", dim(parameter.doc));
   }
   std::vector<std::string> traits;

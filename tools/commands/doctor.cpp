@@ -1,25 +1,26 @@
-#include "commands/command.hpp"
-#include "commands/vector_level.hpp"
-
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
 #include <thread>
+
+#include "commands/command.hpp"
+#include "commands/vector_level.hpp"
 
 namespace bodeflow::tools {
 namespace {
 
 struct Finding {
   std::string what;
-  std::string state;   ///< "good", "note" or "bad"
+  std::string state;  ///< "good", "note" or "bad"
   std::string found;
   std::string advice;  ///< what to do, empty when good
 };
 
 Finding processor() {
-  return {"processor", "good", fmt::format("{} cores, {}", std::thread::hardware_concurrency(), vector_level_name(processor_vector_level())), ""};
+  return {"processor", "good",
+          fmt::format("{} cores, {}", std::thread::hardware_concurrency(), vector_level_name(processor_vector_level())), ""};
 }
 
 Finding plugins(const Registry& registry) {
@@ -42,13 +43,15 @@ Finding runs_folder() {
   const auto space = std::filesystem::space(".", error);
   const double gigabytes = error ? 0.0 : static_cast<double>(space.available) / 1e9;
   if (!writable) return {"run directories", "bad", "the working directory can't be written", "run elsewhere, or give --out DIR"};
-  if (gigabytes < 1.0) return {"run directories", "note", fmt::format("{:.2f} GB free", gigabytes), "make room before long recordings"};
+  if (gigabytes < 1.0)
+    return {"run directories", "note", fmt::format("{:.2f} GB free", gigabytes), "make room before long recordings"};
   return {"run directories", "good", fmt::format("{:.1f} GB free here", gigabytes), ""};
 }
 
 Finding graphviz() {
   const bool found = std::system("command -v dot >/dev/null 2>&1") == 0;
-  return {"Graphviz", found ? "good" : "note", found ? "found" : "absent", found ? "" : "apt-get install graphviz, for 'bodeflow graph --format svg'"};
+  return {"Graphviz", found ? "good" : "note", found ? "found" : "absent",
+          found ? "" : "apt-get install graphviz, for 'bodeflow graph --format svg'"};
 }
 
 Finding realtime_priority() {
@@ -65,19 +68,22 @@ Finding locked_memory() {
   const bool unlimited = geteuid() == 0 || limit.rlim_cur == RLIM_INFINITY;
   const std::string found = unlimited ? "unlimited" : fmt::format("{} KiB", limit.rlim_cur / 1024);
   const bool enough = unlimited || limit.rlim_cur >= (64U << 20U);
-  return {"locked memory", enough ? "good" : "note", found, enough ? "" : "for clock: realtime, add '@realtime - memlock unlimited' there too"};
+  return {"locked memory", enough ? "good" : "note", found,
+          enough ? "" : "for clock: realtime, add '@realtime - memlock unlimited' there too"};
 }
 
 int doctor(const Session& session, bool as_json) {
   const Registry registry = session.open_registry();
-  const std::vector<Finding> findings{processor(), plugins(registry), runs_folder(), graphviz(), realtime_priority(), locked_memory()};
+  const std::vector<Finding> findings{processor(), plugins(registry),   runs_folder(),
+                                      graphviz(),  realtime_priority(), locked_memory()};
   bool bad = false;
   nlohmann::ordered_json all = nlohmann::json::array();
   for (const auto& finding : findings) {
     bad |= finding.state == "bad";
     all.push_back({{"what", finding.what}, {"state", finding.state}, {"found", finding.found}, {"advice", finding.advice}});
     if (!as_json)
-      fmt::print("{:<5} {:<18} {}{}\n", finding.state, finding.what, finding.found, finding.advice.empty() ? "" : "; " + finding.advice);
+      fmt::print("{:<5} {:<18} {}{}\n", finding.state, finding.what, finding.found,
+                 finding.advice.empty() ? "" : "; " + finding.advice);
   }
   if (as_json) fmt::print("{}\n", all.dump(2));
   return bad ? kRunFailed : kDone;

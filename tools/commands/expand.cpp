@@ -1,6 +1,6 @@
-#include "commands/command.hpp"
-
 #include <fmt/format.h>
+
+#include "commands/command.hpp"
 
 namespace bodeflow::tools {
 

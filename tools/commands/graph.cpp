@@ -1,9 +1,9 @@
-#include "commands/command.hpp"
-#include "console/drawing.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdio>
+
+#include "commands/command.hpp"
+#include "console/drawing.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -42,8 +42,10 @@ void add_graph(CLI::App& app, Session& session) {
   auto options = std::make_shared<GraphOptions>();
   auto format = std::make_shared<std::string>("svg");
   options->add_to(*command);
-  command->add_option("--format", *format, "svg (through Graphviz), dot or mermaid")->check(CLI::IsMember({"svg", "dot", "mermaid"}));
-  command->callback([&session, options, format] { session.action = [&session, options, format] { return draw(session, *options, *format); }; });
+  command->add_option("--format", *format, "svg (through Graphviz), dot or mermaid")
+      ->check(CLI::IsMember({"svg", "dot", "mermaid"}));
+  command->callback(
+      [&session, options, format] { session.action = [&session, options, format] { return draw(session, *options, *format); }; });
 }
 
 }  // namespace bodeflow::tools

@@ -1,9 +1,9 @@
 #include "commands/interrupt.hpp"
 
-#include "console/console.hpp"
-
 #include <signal.h>
 #include <unistd.h>
+
+#include "console/console.hpp"
 
 namespace bodeflow::tools {
 namespace {

@@ -1,9 +1,9 @@
-#include "commands/command.hpp"
-
 #include <fmt/format.h>
 
 #include <fstream>
 #include <regex>
+
+#include "commands/command.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -11,7 +11,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The folder of the template: beside the executable, in a build tree and in an installation alike.
-fs::path template_folder(const Session& session) { return session.executable.parent_path().parent_path() / "share" / "bodeflow" / "template"; }
+fs::path template_folder(const Session& session) {
+  return session.executable.parent_path().parent_path() / "share" / "bodeflow" / "template";
+}
 
 std::string replaced(std::string text, const std::string& word, const std::string& by) {
   for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += by.size()) text.replace(at, word.size(), by);
@@ -51,8 +53,10 @@ int new_plugin(const Session& session, const std::string& name) {
     }
   }
   const fs::path prefix = session.executable.parent_path().parent_path();
-  fmt::print("Made {}/. Next:\n  cd {}\n  cmake -B build -DCMAKE_PREFIX_PATH={}\n  cmake --build build\n  ctest --test-dir build --output-on-failure\n", name,
-             name, prefix.string());
+  fmt::print(
+      "Made {}/. Next:\n  cd {}\n  cmake -B build -DCMAKE_PREFIX_PATH={}\n  cmake --build build\n  ctest --test-dir build "
+      "--output-on-failure\n",
+      name, name, prefix.string());
   fmt::print("  bodeflow --path build run example.yaml\n");
   return kDone;
 }
@@ -62,7 +66,8 @@ int new_plugin(const Session& session, const std::string& name) {
 void add_new(CLI::App& app, Session& session) {
   auto* command = app.add_subcommand("new", "Begin something of your own: new plugin NAME");
   command->require_subcommand(1);
-  auto* plugin = command->add_subcommand("plugin", "A folder with a plugin that builds against the SDK, with its tests and a graph");
+  auto* plugin =
+      command->add_subcommand("plugin", "A folder with a plugin that builds against the SDK, with its tests and a graph");
   auto name = std::make_shared<std::string>();
   plugin->add_option("name", *name, "Name of the plugin and its folder")->required();
   plugin->callback([&session, name] { session.action = [&session, name] { return new_plugin(session, *name); }; });

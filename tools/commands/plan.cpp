@@ -1,8 +1,9 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
 #include "commands/command.hpp"
 #include "phases/run.hpp"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace bodeflow::tools {
 namespace {
@@ -44,12 +45,14 @@ int plan(const Session& session, const PlanCommand& command) {
 }  // namespace
 
 void add_plan(CLI::App& app, Session& session) {
-  auto* command = app.add_subcommand("plan", "Show what the engine will do: order of calls, chunks, buffers, threads, latency, memory");
+  auto* command =
+      app.add_subcommand("plan", "Show what the engine will do: order of calls, chunks, buffers, threads, latency, memory");
   auto options = std::make_shared<PlanCommand>();
   options->graph.add_to(*command);
   command->add_flag("--json", options->json, "Print JSON");
   command->add_option("--threads", options->threads, "Most threads")->check(CLI::Range(1, 256));
-  command->add_option("--chunk", options->chunk, "Samples of the fastest stream in one call, at most")->check(CLI::Range(1, 1 << 20));
+  command->add_option("--chunk", options->chunk, "Samples of the fastest stream in one call, at most")
+      ->check(CLI::Range(1, 1 << 20));
   command->callback([&session, options] { session.action = [&session, options] { return plan(session, *options); }; });
 }
 

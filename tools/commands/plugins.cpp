@@ -1,7 +1,8 @@
-#include "commands/command.hpp"
-
 #include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
+
+#include "commands/command.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -15,8 +16,13 @@ int list_plugins(const Session& session, bool as_json) {
     if (as_json) {
       nlohmann::ordered_json blocks = nlohmann::json::array();
       for (const auto& block : plugin.blocks) blocks.push_back({{"id", block.id}, {"summary", block.summary}});
-      all.push_back({{"name", plugin.name}, {"version", plugin.version}, {"file", plugin.file}, {"build", plugin.build},
-                     {"sha256", plugin.sha256}, {"refused", plugin.refused}, {"blocks", blocks}});
+      all.push_back({{"name", plugin.name},
+                     {"version", plugin.version},
+                     {"file", plugin.file},
+                     {"build", plugin.build},
+                     {"sha256", plugin.sha256},
+                     {"refused", plugin.refused},
+                     {"blocks", blocks}});
     } else if (!plugin.refused.empty()) {
       say_warning(fmt::format("{}: {}", plugin.file, plugin.refused));
     } else {

@@ -1,10 +1,10 @@
-#include "commands/command.hpp"
-#include "commands/run_graph.hpp"
-#include "commands/vector_level.hpp"
-
 #include <fmt/format.h>
 
 #include <fstream>
+
+#include "commands/command.hpp"
+#include "commands/run_graph.hpp"
+#include "commands/vector_level.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -25,7 +25,8 @@ void warn_of_changes(const nlohmann::json& manifest, const Registry& registry) {
   for (const auto& plugin : plugins)
     for (const auto& found : registry.plugins())
       if (found.name == plugin.value("name", "") && found.sha256 != plugin.value("sha256", ""))
-        say_warning(fmt::format("plugin '{}' is not the file of the run: {} then, {} now", found.name, plugin.value("version", "?"), found.version));
+        say_warning(fmt::format("plugin '{}' is not the file of the run: {} then, {} now", found.name,
+                                plugin.value("version", "?"), found.version));
   const nlohmann::json inputs = manifest.value("inputs", nlohmann::json::array());
   for (const auto& input : inputs) {
     const std::string path = input.value("path", "");
@@ -36,7 +37,8 @@ void warn_of_changes(const nlohmann::json& manifest, const Registry& registry) {
 
 /// The outputs whose bits differ.
 std::vector<std::string> differences(const nlohmann::json& before, const nlohmann::json& after) {
-  const auto old_hashes = before.value("hashes", nlohmann::json::object()), new_hashes = after.value("hashes", nlohmann::json::object());
+  const auto old_hashes = before.value("hashes", nlohmann::json::object()),
+             new_hashes = after.value("hashes", nlohmann::json::object());
   std::vector<std::string> different;
   for (const auto& [name, hash] : old_hashes.items())
     if (!new_hashes.contains(name) || new_hashes[name] != hash) different.push_back(name);
@@ -87,7 +89,9 @@ int rerun(const Session& session, const RerunCommand& command) {
   const auto different = differences(*manifest, *again);
   const std::size_t count = again->value("hashes", nlohmann::json::object()).size();
   if (command.json)
-    fmt::print("{}\n", nlohmann::ordered_json{{"directory", ran.directory.string()}, {"outputs", count}, {"different", different}}.dump(2));
+    fmt::print(
+        "{}\n",
+        nlohmann::ordered_json{{"directory", ran.directory.string()}, {"outputs", count}, {"different", different}}.dump(2));
   else if (different.empty())
     fmt::print("{} outputs, all identical bit for bit\nRun directory: {}\n", count, ran.directory.string());
   if (different.empty()) return kDone;

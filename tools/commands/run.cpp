@@ -1,11 +1,10 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include "commands/command.hpp"
 #include "commands/run_graph.hpp"
 #include "commands/vector_level.hpp"
 #include "console/summary.hpp"
-
-#include <fmt/format.h>
-
-#include <unistd.h>
 
 namespace bodeflow::tools {
 namespace {
@@ -73,8 +72,10 @@ void add_run(CLI::App& app, Session& session) {
   options->graph.add_to(*command);
   command->add_option("--out", options->out, "Run directory (runs/<time>-<graph> otherwise)")->type_name("DIR");
   command->add_option("--threads", options->threads, "Most threads")->check(CLI::Range(1, 256));
-  command->add_option("--chunk", options->chunk, "Samples of the fastest stream in one call, at most")->check(CLI::Range(1, 1 << 20));
-  command->add_option("--isa", options->isa, "Widest vector unit of kernels (this processor's otherwise)")->check(CLI::IsMember(vector_level_names()));
+  command->add_option("--chunk", options->chunk, "Samples of the fastest stream in one call, at most")
+      ->check(CLI::Range(1, 1 << 20));
+  command->add_option("--isa", options->isa, "Widest vector unit of kernels (this processor's otherwise)")
+      ->check(CLI::IsMember(vector_level_names()));
   command->add_flag("--dry-run", options->dry_run, "Check and plan, show what would run, run nothing");
   command->add_flag("--json", options->json, "Print the results as JSON");
   command->callback([&session, options] { session.action = [&session, options] { return run(session, *options); }; });

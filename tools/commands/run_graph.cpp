@@ -1,13 +1,13 @@
 #include "commands/run_graph.hpp"
 
-#include "commands/interrupt.hpp"
-#include "commands/vector_level.hpp"
-#include "console/console.hpp"
-
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
 #include <set>
+
+#include "commands/interrupt.hpp"
+#include "commands/vector_level.hpp"
+#include "console/console.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -19,7 +19,11 @@ nlohmann::json manifest_of(const graph::Graph& graph, const Registry& registry, 
     for (const auto& block : phase.blocks) {
       const PluginDescription* plugin = registry.plugin_of(block.type->id);
       if (plugin != nullptr && seen.insert(plugin->name).second)
-        plugins.push_back({{"name", plugin->name}, {"version", plugin->version}, {"file", plugin->file}, {"sha256", plugin->sha256}, {"build", plugin->build}});
+        plugins.push_back({{"name", plugin->name},
+                           {"version", plugin->version},
+                           {"file", plugin->file},
+                           {"sha256", plugin->sha256},
+                           {"build", plugin->build}});
     }
   utsname system{};
   uname(&system);
@@ -36,18 +40,25 @@ nlohmann::json manifest_of(const graph::Graph& graph, const Registry& registry, 
 
 const char* status_word(phases::RunResult::Status status) {
   switch (status) {
-    case phases::RunResult::Status::complete: return "complete";
-    case phases::RunResult::Status::interrupted: return "partial";
-    default: return "failed";
+    case phases::RunResult::Status::complete:
+      return "complete";
+    case phases::RunResult::Status::interrupted:
+      return "partial";
+    default:
+      return "failed";
   }
 }
 
 int exit_code_of(phases::RunResult::Status status) {
   switch (status) {
-    case phases::RunResult::Status::complete: return kDone;
-    case phases::RunResult::Status::interrupted: return kInterrupted;
-    case phases::RunResult::Status::rejected: return kRejected;
-    default: return kRunFailed;
+    case phases::RunResult::Status::complete:
+      return kDone;
+    case phases::RunResult::Status::interrupted:
+      return kInterrupted;
+    case phases::RunResult::Status::rejected:
+      return kRejected;
+    default:
+      return kRunFailed;
   }
 }
 

@@ -1,23 +1,23 @@
 #pragma once
 
-#include "phases/run.hpp"
-
 #include <nlohmann/json.hpp>
+
+#include "phases/run.hpp"
 
 namespace bodeflow::tools {
 
 struct RunGraph {
-  std::filesystem::path out;           ///< run directory; empty: below runs/
+  std::filesystem::path out;  ///< run directory; empty: below runs/
   phases::PlanSettings plan;
   std::uint32_t vector_level = 1;
-  nlohmann::json command;              ///< what `rerun` must repeat, for the manifest
+  nlohmann::json command;  ///< what `rerun` must repeat, for the manifest
   std::filesystem::path executable;
 };
 
 struct RanGraph {
   int exit_code = 0;
-  std::filesystem::path directory;     ///< empty: nothing was run
-  nlohmann::ordered_json result;       ///< as result.json
+  std::filesystem::path directory;  ///< empty: nothing was run
+  nlohmann::ordered_json result;    ///< as result.json
 };
 
 /// Checks, runs and records a graph; says on standard error what went wrong. Used by `run` and `rerun`.

@@ -1,12 +1,14 @@
-#include "commands/command.hpp"
 #include "graph/schema.hpp"
 
 #include <fmt/format.h>
 
+#include "commands/command.hpp"
+
 namespace bodeflow::tools {
 
 void add_schema(CLI::App& app, Session& session) {
-  auto* command = app.add_subcommand("schema", "Print the JSON schema of graph files, for editors: blocks and parameters of all plugins found");
+  auto* command = app.add_subcommand(
+      "schema", "Print the JSON schema of graph files, for editors: blocks and parameters of all plugins found");
   command->callback([&session] {
     session.action = [&session]() -> int {
       const Registry registry = session.open_registry();

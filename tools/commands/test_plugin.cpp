@@ -1,10 +1,10 @@
-#include "commands/command.hpp"
-#include "plugins/probe.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstring>
+
+#include "commands/command.hpp"
+#include "plugins/probe.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -40,10 +40,12 @@ int test_plugin(const Session& session, const TestCommand& command) {
 }  // namespace
 
 void add_test_plugin(CLI::App& app, Session& session) {
-  auto* command = app.add_subcommand("test-plugin", "Test a plugin against its contract: life cycle, bit-identity, claims, bad values");
+  auto* command =
+      app.add_subcommand("test-plugin", "Test a plugin against its contract: life cycle, bit-identity, claims, bad values");
   auto options = std::make_shared<TestCommand>();
   command->add_option("file", options->file, "The plugin: a shared library")->required();
-  command->add_option("--settings", options->settings, "A file with parameters to test, a line each: example.gain: gain = 2")->type_name("FILE");
+  command->add_option("--settings", options->settings, "A file with parameters to test, a line each: example.gain: gain = 2")
+      ->type_name("FILE");
   command->add_option("--block", options->block, "This block alone")->type_name("ID");
   command->add_flag("--all", options->all, "List what passed as well");
   command->callback([&session, options] { session.action = [&session, options] { return test_plugin(session, *options); }; });

@@ -30,7 +30,8 @@ void say_error(const std::string& text) { fmt::print(stderr, "{} {}\n", painted(
 
 void say_problems(const Problems& problems) {
   for (const auto& problem : problems) fmt::print(stderr, "{}\n", to_string(problem));
-  fmt::print(stderr, "{}\n", painted(STDERR_FILENO, "31", problems.size() == 1 ? "1 problem" : fmt::format("{} problems", problems.size())));
+  fmt::print(stderr, "{}\n",
+             painted(STDERR_FILENO, "31", problems.size() == 1 ? "1 problem" : fmt::format("{} problems", problems.size())));
 }
 
 std::string bold(const std::string& text) { return painted(STDOUT_FILENO, "1", text); }

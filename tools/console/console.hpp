@@ -1,9 +1,9 @@
 #pragma once
 
+#include <string>
+
 #include "execute/execute.hpp"
 #include "graph/problem.hpp"
-
-#include <string>
 
 namespace bodeflow::tools {
 
@@ -14,7 +14,7 @@ enum ExitCode {
   kUsage = 2,
   kRejected = 3,  ///< graph or data
   kPlugin = 4,
-  kDevice = 5,    ///< or network
+  kDevice = 5,  ///< or network
   kGateMissed = 6,
   kInterrupted = 130
 };

@@ -30,13 +30,16 @@ std::vector<Edge> edges_of(const graph::Graph& graph) {
   for (std::size_t p = 0; p < graph.phases.size(); ++p) {
     const Phase& phase = graph.phases[p];
     for (const auto& edge : phase.streams)
-      edges.push_back({node(p, edge.from.block), node(p, edge.to.block), edge_label(phase, BF_STREAM, edge.from, edge.to), false});
+      edges.push_back(
+          {node(p, edge.from.block), node(p, edge.to.block), edge_label(phase, BF_STREAM, edge.from, edge.to), false});
     for (const auto& edge : phase.messages)
-      edges.push_back({node(p, edge.from.block), node(p, edge.to.block), edge_label(phase, BF_MESSAGE, edge.from, edge.to), true});
+      edges.push_back(
+          {node(p, edge.from.block), node(p, edge.to.block), edge_label(phase, BF_MESSAGE, edge.from, edge.to), true});
     for (const auto& reference : phase.references)
       for (std::size_t q = 0; q < p; ++q)
         if (graph.phases[q].name == reference.phase)
-          edges.push_back({node(q, graph.phases[q].block_index(reference.block)), node(p, reference.to.block), reference.port, true});
+          edges.push_back(
+              {node(q, graph.phases[q].block_index(reference.block)), node(p, reference.to.block), reference.port, true});
   }
   return edges;
 }
@@ -44,13 +47,17 @@ std::vector<Edge> edges_of(const graph::Graph& graph) {
 }  // namespace
 
 std::string to_dot(const graph::Graph& graph) {
-  std::string text = "digraph bodeflow {\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n  edge [fontname=\"sans-serif\", fontsize=10];\n";
+  std::string text =
+      "digraph bodeflow {\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n  edge "
+      "[fontname=\"sans-serif\", fontsize=10];\n";
   for (std::size_t p = 0; p < graph.phases.size(); ++p) {
     const Phase& phase = graph.phases[p];
     const std::string indent = phase.name.empty() ? "  " : "    ";
-    if (!phase.name.empty()) text += fmt::format("  subgraph cluster_{} {{\n    label=\"{}\";\n    fontname=\"sans-serif\";\n", p, phase.name);
+    if (!phase.name.empty())
+      text += fmt::format("  subgraph cluster_{} {{\n    label=\"{}\";\n    fontname=\"sans-serif\";\n", p, phase.name);
     for (std::size_t b = 0; b < phase.blocks.size(); ++b)
-      text += fmt::format("{}{} [label=\"{}\\n{}\"];\n", indent, node(p, static_cast<int>(b)), phase.blocks[b].name, phase.blocks[b].type->id);
+      text += fmt::format("{}{} [label=\"{}\\n{}\"];\n", indent, node(p, static_cast<int>(b)), phase.blocks[b].name,
+                          phase.blocks[b].type->id);
     if (!phase.name.empty()) text += "  }\n";
   }
   for (const auto& edge : edges_of(graph))

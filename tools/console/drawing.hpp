@@ -1,8 +1,8 @@
 #pragma once
 
-#include "graph/graph.hpp"
-
 #include <string>
+
+#include "graph/graph.hpp"
 
 namespace bodeflow::tools {
 

@@ -1,7 +1,5 @@
 #include "console/summary.hpp"
 
-#include "console/console.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,8 @@
 #include <complex>
 #include <numbers>
 #include <set>
+
+#include "console/console.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -52,8 +52,8 @@ void print_response(const Json& record) {
   const Json& frequency = record["arrays"]["frequency"]["data"];
   const std::size_t outputs = response["shape"][1], inputs = response["shape"][2];
   const auto& attributes = record["attributes"];
-  fmt::print("  {} lines, {:.4g} to {:.4g} Hz; {} periods; {}\n", frequency.size(), number(frequency.front()), number(frequency.back()),
-             attributes.value("periods", Json("?")).dump(), attributes.value("form", std::string()));
+  fmt::print("  {} lines, {:.4g} to {:.4g} Hz; {} periods; {}\n", frequency.size(), number(frequency.front()),
+             number(frequency.back()), attributes.value("periods", Json("?")).dump(), attributes.value("form", std::string()));
   for (std::size_t i = 0; i < outputs; ++i)
     for (std::size_t j = 0; j < inputs; ++j) {
       fmt::print("  {} / {} [{}]\n", channel_name(record, "output_names", i), channel_name(record, "input_names", j),
@@ -64,8 +64,8 @@ void print_response(const Json& record) {
         const std::complex<double> g(number(response["data"][at][0]), number(response["data"][at][1]));
         // The real and imaginary parts share the variance of the complex value: |G| has half of it.
         const double deviation = std::sqrt(number(variance["data"][at]) / 2.0);
-        fmt::print("  {:>10.4g} {:>12.5g} {:>10.2f} {:>12.2e}\n", number(frequency[k]), std::abs(g), std::arg(g) * 180.0 / std::numbers::pi,
-                   deviation);
+        fmt::print("  {:>10.4g} {:>12.5g} {:>10.2f} {:>12.2e}\n", number(frequency[k]), std::abs(g),
+                   std::arg(g) * 180.0 / std::numbers::pi, deviation);
       }
     }
 }
@@ -88,8 +88,9 @@ void print_summary(const Json& result) {
   if (!result.contains("results")) return;
   for (const auto& [name, record] : result["results"].items()) {
     fmt::print("{}: {}\n", bold(name), record["type"].get<std::string>());
-    const bool response = record["type"] == "frequency_response" && record["arrays"].contains("response") && record["arrays"].contains("variance") &&
-                          record["arrays"].contains("frequency") && !record["arrays"]["frequency"]["data"].empty();
+    const bool response = record["type"] == "frequency_response" && record["arrays"].contains("response") &&
+                          record["arrays"].contains("variance") && record["arrays"].contains("frequency") &&
+                          !record["arrays"]["frequency"]["data"].empty();
     if (response)
       print_response(record);
     else

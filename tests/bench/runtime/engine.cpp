@@ -1,14 +1,13 @@
 #include "engine.hpp"
 
+#include <fmt/format.h>
+
+#include <bodeflow/record.hpp>
+#include <stdexcept>
+
 #include "execute/execute.hpp"
 #include "graph/load.hpp"
 #include "phases/prepare.hpp"
-
-#include <bodeflow/record.hpp>
-
-#include <fmt/format.h>
-
-#include <stdexcept>
 
 namespace bench {
 namespace {
@@ -57,8 +56,8 @@ Engine::Engine(const std::string& yaml, const EngineOptions& options) : state_(n
 Engine::~Engine() { delete state_; }
 
 void Engine::run() {
-  const auto outcome = execute::execute(state_->graph.phases[0], state_->prepared.facts, state_->prepared.plan, state_->prepared.instances, {},
-                                        state_->sink, state_->options);
+  const auto outcome = execute::execute(state_->graph.phases[0], state_->prepared.facts, state_->prepared.plan,
+                                        state_->prepared.instances, {}, state_->sink, state_->options);
   if (outcome.status != execute::Outcome::Status::complete) throw std::runtime_error(outcome.reason);
 }
 
@@ -69,7 +68,9 @@ std::vector<double> Engine::ages() const {
 }
 
 std::string multiply_graph(int blocks, std::size_t samples) {
-  std::string text = fmt::format("bodeflow: 1\nrun: {{duration: {}}}\nblocks:\n  source: {{block: bench.source}}\n  sink: {{block: bench.sink}}\n", seconds_of(samples));
+  std::string text = fmt::format(
+      "bodeflow: 1\nrun: {{duration: {}}}\nblocks:\n  source: {{block: bench.source}}\n  sink: {{block: bench.sink}}\n",
+      seconds_of(samples));
   std::string chain = "source";
   for (int b = 0; b < blocks; ++b) {
     text += fmt::format("  g{}: {{block: filters.gain, gain: {}}}\n", b, 1.0 + 1e-3 * (b + 1));
@@ -87,8 +88,9 @@ std::string feedback_graph(std::size_t samples) {
 }
 
 std::string latency_graph(std::size_t samples) {
-  std::string text = fmt::format("bodeflow: 1\nrun: {{duration: {}}}\nblocks:\n  stamp: {{block: bench.stamp}}\n  age: {{block: bench.age, samples: {}}}\n",
-                                 seconds_of(samples), samples);
+  std::string text = fmt::format(
+      "bodeflow: 1\nrun: {{duration: {}}}\nblocks:\n  stamp: {{block: bench.stamp}}\n  age: {{block: bench.age, samples: {}}}\n",
+      seconds_of(samples), samples);
   std::string chain = "stamp";
   for (int b = 0; b < 8; ++b) {
     text += fmt::format("  c{}: {{block: bench.copy}}\n", b);
@@ -99,7 +101,8 @@ std::string latency_graph(std::size_t samples) {
 
 std::string heavy_graph(std::size_t samples) {
   return fmt::format(
-      "bodeflow: 1\nrun: {{duration: {}}}\nblocks:\n  source: {{block: bench.source}}\n  a: {{block: bench.heavy}}\n  b: {{block: bench.heavy}}\n"
+      "bodeflow: 1\nrun: {{duration: {}}}\nblocks:\n  source: {{block: bench.source}}\n  a: {{block: bench.heavy}}\n  b: "
+      "{{block: bench.heavy}}\n"
       "  sink: {{block: bench.sink}}\nconnections:\n  - source -> a -> b -> sink\n",
       seconds_of(samples));
 }

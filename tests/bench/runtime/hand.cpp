@@ -12,7 +12,8 @@ constexpr std::size_t kChunk = 1024;
 void keep(const void* data) { asm volatile("" : : "g"(data) : "memory"); }
 
 double now_ns() {
-  return static_cast<double>(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
+  return static_cast<double>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
 }
 
 template <int Blocks>
@@ -36,9 +37,12 @@ void copy(const double* x, double* y, std::size_t count) { std::memcpy(y, x, cou
 
 void hand_multiply(int blocks, std::size_t samples) {
   switch (blocks) {
-    case 1: return multiply<1>(samples);
-    case 4: return multiply<4>(samples);
-    default: return multiply<16>(samples);
+    case 1:
+      return multiply<1>(samples);
+    case 4:
+      return multiply<4>(samples);
+    default:
+      return multiply<16>(samples);
   }
 }
 

@@ -5,7 +5,8 @@
 
 namespace bench {
 
-/// `blocks` multiplications of `samples` doubles in chunks of 1024, all in one loop: what an engineer would write for this job alone.
+/// `blocks` multiplications of `samples` doubles in chunks of 1024, all in one loop: what an engineer would write for this job
+/// alone.
 void hand_multiply(int blocks, std::size_t samples);
 
 /// y = 0.5 x + 0.4 y[n-1], sample by sample: the loop of the feedback graph, written out.

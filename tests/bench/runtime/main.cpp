@@ -1,16 +1,16 @@
 // The engine beside GNU Radio and hand-written loops, interleaved in one run. Prints medians; the figures in
 // tests/bench/README.md come from here.
 
-#include "engine.hpp"
-#include "hand.hpp"
-#include "measure.hpp"
-#include "radio.hpp"
-
 #include <fmt/format.h>
 
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "engine.hpp"
+#include "hand.hpp"
+#include "measure.hpp"
+#include "radio.hpp"
 
 namespace {
 
@@ -37,8 +37,8 @@ void print(const std::string& title, const std::vector<Candidate>& candidates) {
   fmt::print("\n{}\n\n| | CPU ns/sample | wall ns/sample | CPU against the first |\n|---|---|---|---|\n", title);
   const double first = bench::median(candidates.front().cpu_ns);
   for (const auto& candidate : candidates)
-    fmt::print("| {} | {:.3f} | {:.3f} | {:.2f} |\n", candidate.name, bench::median(candidate.cpu_ns), bench::median(candidate.wall_ns),
-               bench::median(candidate.cpu_ns) / first);
+    fmt::print("| {} | {:.3f} | {:.3f} | {:.2f} |\n", candidate.name, bench::median(candidate.cpu_ns),
+               bench::median(candidate.wall_ns), bench::median(candidate.cpu_ns) / first);
 }
 
 Candidate engine(const std::string& name, const std::string& graph, const bench::EngineOptions& options) {
@@ -77,7 +77,8 @@ void heavy(int repeats) {
   candidates.push_back(engine("bodeflow, 2 threads", graph, {2, 1024, false}));
   interleave(candidates, kSamples, repeats);
   print("Two heavy blocks", candidates);
-  fmt::print("\nwall time of 1 thread over 2: {:.2f}\n", bench::median(candidates[0].wall_ns) / bench::median(candidates[1].wall_ns));
+  fmt::print("\nwall time of 1 thread over 2: {:.2f}\n",
+             bench::median(candidates[0].wall_ns) / bench::median(candidates[1].wall_ns));
 }
 
 void latency(int repeats) {
@@ -95,7 +96,8 @@ void latency(int repeats) {
     keep(2, bench::radio_latency(kSamples, true));
     keep(3, bench::hand_latency(kSamples));
   }
-  static constexpr const char* kNames[] = {"bodeflow, chunk 1", "GNU Radio, defaults", "GNU Radio, at most 1 item", "hand-written chain"};
+  static constexpr const char* kNames[] = {"bodeflow, chunk 1", "GNU Radio, defaults", "GNU Radio, at most 1 item",
+                                           "hand-written chain"};
   fmt::print("\nOne sample through 8 blocks\n\n| | p50 us | p99 us | p50 against the first |\n|---|---|---|---|\n");
   for (int row = 0; row < 4; ++row)
     fmt::print("| {} | {:.3f} | {:.3f} | {:.1f} |\n", kNames[row], bench::median(p50[row]) / 1e3, bench::median(p99[row]) / 1e3,

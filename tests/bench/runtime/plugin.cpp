@@ -1,7 +1,6 @@
 // Blocks for the benchmarks alone: an endless source, a sink, a copy, a heavy block, and both ends of a latency measurement.
 
 #include <bodeflow/block.hpp>
-
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -88,7 +87,8 @@ class Heavy final : public bodeflow::Block {
 };
 
 double now_ns() {
-  return static_cast<double>(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
+  return static_cast<double>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
 }
 
 /// One sample that carries the time at which it left.

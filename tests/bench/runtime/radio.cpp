@@ -18,7 +18,8 @@ namespace {
 constexpr int kLowLatencyItems = 256;
 
 double now_ns() {
-  return static_cast<double>(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
+  return static_cast<double>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
 }
 
 /// What source and sink share: one sample is on its way at a time.
@@ -31,7 +32,9 @@ struct Flight {
 class OneByOne final : public gr::sync_block {
  public:
   OneByOne(Flight& flight, std::size_t samples)
-      : gr::sync_block("one_by_one", gr::io_signature::make(0, 0, 0), gr::io_signature::make(1, 1, sizeof(float))), flight_(flight), samples_(samples) {}
+      : gr::sync_block("one_by_one", gr::io_signature::make(0, 0, 0), gr::io_signature::make(1, 1, sizeof(float))),
+        flight_(flight),
+        samples_(samples) {}
 
   int work(int, gr_vector_const_void_star&, gr_vector_void_star& outputs) override {
     if (sent_ == samples_) return WORK_DONE;
@@ -51,7 +54,8 @@ class OneByOne final : public gr::sync_block {
 class Landing final : public gr::sync_block {
  public:
   explicit Landing(Flight& flight)
-      : gr::sync_block("landing", gr::io_signature::make(1, 1, sizeof(float)), gr::io_signature::make(0, 0, 0)), flight_(flight) {}
+      : gr::sync_block("landing", gr::io_signature::make(1, 1, sizeof(float)), gr::io_signature::make(0, 0, 0)),
+        flight_(flight) {}
 
   int work(int items, gr_vector_const_void_star&, gr_vector_void_star&) override {
     flight_.ages.push_back(now_ns() - flight_.left);

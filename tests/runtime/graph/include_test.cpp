@@ -120,7 +120,8 @@ TEST_CASE("include: a broken file and an absent one are both reported") {
   folder.write("main.yaml", "bodeflow: 1\ninclude: [a.yaml, b.yaml]\nblocks: {}\n");
   folder.write("a.yaml", "blocks: {a: [}\n");
   CHECK(folder.problems("main.yaml") ==
-        "main.yaml:2:19: can't read 'b.yaml': there is no such file\na.yaml:1:14: not valid YAML: ']' or '}' without its beginning");
+        "main.yaml:2:19: can't read 'b.yaml': there is no such file\na.yaml:1:14: not valid YAML: ']' or '}' without its "
+        "beginning");
 }
 
 TEST_CASE("load: a file that is not there, or no file, is refused by name") {

@@ -86,9 +86,7 @@ TEST_CASE("a block id that an earlier plugin gives makes the later one refused, 
   CHECK(reversed.ids() == std::vector<std::string>{"fixture.gain"});
 }
 
-TEST_CASE("what a plugin prints while it is loaded does not disturb its description"){
-    CHECK(reason(fixture("noise")).empty());
-}
+TEST_CASE("what a plugin prints while it is loaded does not disturb its description") { CHECK(reason(fixture("noise")).empty()); }
 
 TEST_CASE("a probe command that can't be started is told for every plugin") {
   Registry::Options wrong = options({fixture("good")});

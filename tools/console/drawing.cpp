@@ -50,7 +50,7 @@ std::string to_dot(const graph::Graph& graph) {
   std::string text =
       "digraph bodeflow {\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n  edge "
       "[fontname=\"sans-serif\", fontsize=10];\n";
-  for (std::size_t p = 0; p < graph.phases.size(); ++p) {
+  for (std::size_t p = graph.phases.size(); p-- > 0;) {  // Graphviz stacks them from below
     const Phase& phase = graph.phases[p];
     const std::string indent = phase.name.empty() ? "  " : "    ";
     if (!phase.name.empty())

@@ -216,14 +216,24 @@ void add_carried(Run& run) {
       for (const CopyRun& copy : op.copies) add(copy.to, *copy.writer, copy.samples);
 }
 
+/// The op after which a chunk's samples stand in the buffer that an input reads: its producer's, or that of a copy.
+std::int64_t op_that_fills(const Run& run, const PartitionRun& partition, const graph::StreamEdge& edge) {
+  const int buffer = run.plan->inputs[static_cast<std::size_t>(edge.to.block)][static_cast<std::size_t>(edge.to.port)].buffer;
+  for (std::size_t i = 0; i < partition.ops.size(); ++i)
+    for (const CopyRun& copy : partition.ops[i].copies)
+      if (copy.to == buffer) return static_cast<std::int64_t>(i);
+  return op_of(partition, edge.from.block);
+}
+
 tl::expected<void, std::string> add_dependencies(Run& run) {
   for (const graph::StreamEdge& edge : run.phase->streams) {
     const BlockRun &from = run.block(edge.from.block), &to = run.block(edge.to.block);
+    const PartitionRun& partition = *run.partitions[static_cast<std::size_t>(from.partition)];
+    const std::int64_t op = op_that_fills(run, partition, edge);
     if (from.partition != to.partition) {
-      depend(run, from.index, to.index, Lane::Wait::samples, 0);
+      depend(run, from.index, op, to.index, Lane::Wait::samples, 0);
     } else {
-      const PartitionRun& partition = *run.partitions[static_cast<std::size_t>(from.partition)];
-      if (op_of(partition, to.index) < op_of(partition, from.index))
+      if (op_of(partition, to.index) < op)
         return Failed(fmt::format("plan: block '{}' is called before block '{}', whose samples it takes", run.name(to.index),
                                   run.name(from.index)));
     }
@@ -253,12 +263,11 @@ std::int64_t op_of(const PartitionRun& partition, int block) {
   return -1;
 }
 
-void depend(Run& run, int from, int to, Lane::Wait kind, std::int64_t lag) {
+void depend(Run& run, int from, std::int64_t op, int to, Lane::Wait kind, std::int64_t lag) {
   const BlockRun &producer = run.block(from), &consumer = run.block(to);
   if (producer.partition == consumer.partition) return;
   PartitionRun& before = *run.partitions[static_cast<std::size_t>(producer.partition)];
   PartitionRun& after = *run.partitions[static_cast<std::size_t>(consumer.partition)];
-  const std::int64_t op = op_of(before, from);
   before.ops[static_cast<std::size_t>(op)].followed = true;
   after.ops[static_cast<std::size_t>(op_of(after, to))].dependencies.push_back({producer.partition, op, lag, kind, to, from});
 }

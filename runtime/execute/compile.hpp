@@ -18,7 +18,7 @@ tl::expected<void, std::string> compile_messages(Run& run, const std::vector<Ini
 /// Index of the op of `partition` in which `block` is called.
 std::int64_t op_of(const PartitionRun& partition, int block);
 
-/// Says that the op of block `to` waits for that of block `from`, where they belong to different threads.
-void depend(Run& run, int from, int to, Lane::Wait kind, std::int64_t lag);
+/// Says that the op of block `to` waits for op `op` of the thread of block `from`, where that is another thread.
+void depend(Run& run, int from, std::int64_t op, int to, Lane::Wait kind, std::int64_t lag);
 
 }  // namespace bodeflow::execute

@@ -46,7 +46,8 @@ tl::expected<void, std::string> add_edge(Run& run, int index) {
   to.takes_messages = true;
   const std::int64_t lag = lag_of(run, *latency);
   if (!to.has_streams()) to.origins.push_back({from.index, index, *latency, threads_apart, lag});
-  depend(run, from.index, to.index, Lane::Wait::records, lag);
+  depend(run, from.index, op_of(*run.partitions[static_cast<std::size_t>(from.partition)], from.index), to.index,
+         Lane::Wait::records, lag);
   return {};
 }
 

@@ -45,7 +45,6 @@ std::size_t activate(Run& run, const std::vector<std::unique_ptr<Instance>>& ins
 
 /// All threads of the run until their end; false: one hangs.
 bool run_threads(const std::shared_ptr<Run>& run, Crew& crew) {
-  run->started = Clock::now();
   for (const auto& worker : run->workers)
     crew.start(worker->lane(), fmt::format("the thread of block '{}'", run->name(worker->block().index)),
                [w = worker.get()] { w->run(); });
@@ -103,6 +102,7 @@ Outcome execute_all(const std::shared_ptr<Run>& run, const std::vector<std::uniq
   std::vector<int> hanging;
   std::string hang;
   if (activated == instances.size()) {
+    run->started = Clock::now();
     const Reporter reporter(*run);
     Crew crew(run);
     try {

@@ -14,7 +14,8 @@ struct RunOptions {
   std::uint32_t vector_level = 1;
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string& phase, const execute::Progress&)> progress;
-  std::filesystem::path command;  ///< our own executable: the worker processes of a sweep run `command phase-worker ...`
+  std::filesystem::path command;         ///< our own executable: the worker processes of a sweep run `command phase-worker ...`
+  std::vector<std::string> plugin_path;  ///< their --path
 };
 
 struct RunResult {

@@ -68,6 +68,7 @@ std::vector<std::string> worker_arguments(const graph::Phase& phase, const recor
                                      (directory.path() / "sweep" / phase.name / "references").string(),
                                      "--vector-level",
                                      std::to_string(options.vector_level)};
+  for (const auto& folder : options.plugin_path) arguments.insert(arguments.end(), {"--path", folder});
   for (std::size_t a = 0; a < values.size(); ++a) {
     const std::string& path = phase.sweep[a].path;
     if (path == "seed") {

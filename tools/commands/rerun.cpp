@@ -78,6 +78,7 @@ int rerun(const Session& session, const RerunCommand& command) {
   if (const std::int64_t chunk = options.command.value("chunk", std::int64_t{0}); chunk > 0) options.plan.chunk = chunk;
   options.out = command.out;
   options.executable = session.executable;
+  options.plugin_path = session.plugin_path;
   const RanGraph ran = run_graph(*graph, registry, options);
   if (ran.exit_code != kDone) return ran.exit_code;
 

@@ -49,6 +49,7 @@ int run(const Session& session, const RunCommand& command) {
 
   options.out = command.out;
   options.executable = session.executable;
+  options.plugin_path = session.plugin_path;
   options.command = {{"threads", command.threads}, {"chunk", command.chunk}};
   const RanGraph ran = run_graph(*graph, registry, options);
   if (ran.directory.empty()) return ran.exit_code;

@@ -108,6 +108,7 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
   run.vector_level = options.vector_level;
   run.stop = &stop;
   run.command = options.executable;
+  run.plugin_path = options.plugin_path;
   run.progress = [&progress](const std::string& phase, const execute::Progress& now) { progress.show(phase, now); };
   const phases::RunResult result = phases::run(graph, std::move(*prepared), registry, **directory, services, run);
   progress.clear();

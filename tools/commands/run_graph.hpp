@@ -11,7 +11,8 @@ struct RunGraph {
   phases::PlanSettings plan;
   std::uint32_t vector_level = 1;
   nlohmann::json command;  ///< what `rerun` must repeat, for the manifest
-  std::filesystem::path executable;
+  std::filesystem::path executable;       ///< our own, for the workers of sweeps, with their --path
+  std::vector<std::string> plugin_path;
 };
 
 struct RanGraph {

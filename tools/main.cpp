@@ -1,9 +1,13 @@
+#include <csignal>
+#include <cstdio>
 #include <exception>
 
 #include "commands/command.hpp"
 
 int main(int argc, char** argv) {
   using namespace bodeflow::tools;
+  std::signal(SIGCHLD, SIG_DFL);  // whoever started us may ignore it; we wait for our children
+  std::signal(SIGPIPE, SIG_IGN);  // a reader of our messages that goes away does not end a run
   Session session;
   std::error_code error;
   session.executable = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -37,7 +41,10 @@ int main(int argc, char** argv) {
     return app.exit(parse_error) == 0 ? kDone : kUsage;
   }
   try {
-    return session.action();
+    const int code = session.action();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    say_error("can't write to standard output");
+    return code == kDone ? kRunFailed : code;
   } catch (const std::exception& exception) {
     say_error(exception.what());
     return kRunFailed;

@@ -60,6 +60,8 @@ class MemorySource final : public ByteSource {
 Expected<std::unique_ptr<ByteSource>> open_file(const std::string& path) {
   std::error_code unknown;
   if (std::filesystem::is_directory(path, unknown)) return unexpected("is a folder, not a file");
+  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
+    return unexpected("is not a regular file");
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) return unexpected("can't be opened: " + reason(errno));
   std::setvbuf(file, nullptr, _IONBF, 0);  // the line reader has its own buffer

@@ -62,6 +62,7 @@ numerics::StateSpace read_model(const Parameters& p) {
   }
   if (polynomials) {
     if (!p.has("numerator") || !p.has("denominator")) fail("numerator and denominator are needed together");
+    if (p.numbers("numerator").empty()) fail("numerator is empty, allowed: at least one coefficient");
     const numerics::TransferFunction system{vector(p.numbers("numerator")), vector(p.numbers("denominator")), sample_time};
     return value_or_fail(numerics::to_state_space(system));
   }

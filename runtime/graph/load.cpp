@@ -47,7 +47,8 @@ tl::expected<Graph, Problems> load_text(const std::string& text, const std::stri
   variables.substitute(root);
   for (auto& o : overrides) variables.substitute(o.value);
   apply(overrides, variables, root, report);
-  if (options.seed) apply_seed(std::to_string(*options.seed), document.add_source("--seed", "", true), root);
+  if (!options.duration.empty()) apply_run_key("duration", options.duration, document.add_source("--for", "", true), root);
+  if (options.seed) apply_run_key("seed", std::to_string(*options.seed), document.add_source("--seed", "", true), root);
 
   Graph graph = check(root, registry, report);
   if (!report.empty()) return tl::unexpected(sorted(report, document));

@@ -167,18 +167,18 @@ std::string shown(const std::string& assignment) {
   return quoted.substr(1, quoted.size() - 2);
 }
 
-void put_seed(Node& owner, const std::string& seed, const Source& source, bool make) {
+void put_in_run(Node& owner, const std::string& key, const std::string& text, const Source& source, bool make) {
   Node* run = owner.find("run");
   if (run == nullptr && !make) return;
   Node& place = run != nullptr ? *run : owner.at("run", {&source, 0, 0});
   if (place.is_none()) place.kind = Node::Kind::map;
-  if (!place.is_map() || (!make && place.find("seed") == nullptr)) return;
+  if (!place.is_map() || (!make && place.find(key) == nullptr)) return;
   Node value;
   value.kind = Node::Kind::scalar;
-  value.text = seed;
+  value.text = text;
   value.spot = {&source, 0, 0};
   value.origin = &source;
-  place.at("seed", value.spot) = value;
+  place.at(key, value.spot) = value;
 }
 
 }  // namespace
@@ -222,8 +222,9 @@ std::vector<Override> read_overrides(const std::vector<std::pair<std::string, st
 
 void set_variables(std::vector<Override>& overrides, Variables& variables, Report& report) {
   std::erase_if(overrides, [&](const Override& o) {
-    if (!variables.has(o.path[0])) return false;
-    set_below(variables.value(o.path[0]), o.path, 1, o.value, report);
+    const std::size_t at = o.path[0] == "variables" && o.path.size() > 1 ? 1 : 0;  // a variable, or its path in the file
+    if (!variables.has(o.path[at])) return false;
+    set_below(variables.value(o.path[at]), o.path, at + 1, o.value, report);
     return true;
   });
 }
@@ -232,11 +233,11 @@ void apply(const std::vector<Override>& overrides, const Variables& variables, N
   for (const auto& o : overrides) Setter(o, variables, root, report).set();
 }
 
-void apply_seed(const std::string& seed, const Source& source, Node& root) {
-  put_seed(root, seed, source, true);
+void apply_run_key(const std::string& key, const std::string& text, const Source& source, Node& root) {
+  put_in_run(root, key, text, source, true);
   if (Node* phases = root.find("phases"))
     for (auto& phase : phases->items)
-      if (phase.is_map()) put_seed(phase, seed, source, false);
+      if (phase.is_map()) put_in_run(phase, key, text, source, false);
 }
 
 }  // namespace bodeflow::graph

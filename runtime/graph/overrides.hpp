@@ -27,7 +27,7 @@ void set_variables(std::vector<Override>& overrides, Variables& variables, Repor
 /// `phase.key...`; `block.parameter` reaches the block in every phase that has it.
 void apply(const std::vector<Override>& overrides, const Variables& variables, Node& root, Report& report);
 
-/// --seed: the seed of the run and of every phase.
-void apply_seed(const std::string& seed, const Source& source, Node& root);
+/// Writes a value under `run` of the graph, and of each phase that states one of its own: --seed and --for.
+void apply_run_key(const std::string& key, const std::string& text, const Source& source, Node& root);
 
 }  // namespace bodeflow::graph

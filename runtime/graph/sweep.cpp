@@ -78,7 +78,8 @@ class Axis {
   }
 
   /// The value in the words of a --set. Nothing: reported.
-  std::optional<std::string> check(Node value) {
+  /// A path of a file becomes absolute, in the node as well.
+  std::optional<std::string> check(Node& value) {
     if (parameter_ != nullptr) {
       if (!read_parameter(value, *parameter_, where_, report_)) return {};
     } else if (path_ == "seed") {
@@ -130,7 +131,8 @@ void read_sweep(Node& node, Phase& phase, Report& report) {
     if (values->empty()) report.add(e.value.spot, fmt::format("{}: an empty list, allowed: at least one value", where));
     SweepAxis made{e.key, {}, e.spot.place()};
     for (auto& value : *values)
-      if (auto text = axis.check(std::move(value))) made.values.push_back(std::move(*text));
+      if (auto text = axis.check(value)) made.values.push_back(std::move(*text));
+    if (e.value.is_list()) e.value.items = *values;
     runs *= std::max<std::size_t>(1, made.values.size());
     if (runs > static_cast<std::size_t>(kMostSweepValues)) {
       report.add(e.spot, fmt::format("sweep: more than {} runs", kMostSweepValues));

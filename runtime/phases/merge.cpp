@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bodeflow/record.hpp>
 #include <charconv>
 #include <complex>
@@ -36,20 +37,47 @@ bool in_all(const std::vector<RecordView>& views, const ArrayView& first) {
   });
 }
 
-void stack_array(RecordBuilder& merged, const std::vector<RecordView>& views, const ArrayView& first) {
-  if (first.shape.size() >= kRecordMaxRank || !in_all(views, first)) return;
+bool stack_array(RecordBuilder& merged, const std::vector<RecordView>& views, const ArrayView& first) {
+  if (first.shape.size() >= kRecordMaxRank || !in_all(views, first)) return false;
   switch (first.element) {
     case BF_F64:
-      return stack<double>(merged, views, first);
+      stack<double>(merged, views, first);
+      return true;
     case BF_C64:
-      return stack<std::complex<double>>(merged, views, first);
+      stack<std::complex<double>>(merged, views, first);
+      return true;
     case BF_I64:
-      return stack<std::int64_t>(merged, views, first);
+      stack<std::int64_t>(merged, views, first);
+      return true;
     case BF_U8:
-      return stack<std::uint8_t>(merged, views, first);
+      stack<std::uint8_t>(merged, views, first);
+      return true;
     default:
-      return;
+      return false;
   }
+}
+
+/// A number or truth of all runs becomes an array; a text or list of texts stays where it is the same in all.
+void merge_attribute(RecordBuilder& merged, const std::vector<RecordView>& views, const std::string& name) {
+  std::vector<double> numbers;
+  for (const auto& view : views)
+    if (const auto number = view.number(name))
+      numbers.push_back(*number);
+    else if (const auto truth = view.boolean(name))
+      numbers.push_back(*truth ? 1.0 : 0.0);
+  if (numbers.size() == views.size() && !views[0].array(name)) {
+    const auto out = merged.array<double>(name, "", {numbers.size()});
+    std::copy(numbers.begin(), numbers.end(), out.begin());
+    return;
+  }
+  if (name == "of" || name == "runs") return;
+  const auto same = [&](auto get) {
+    return std::all_of(views.begin(), views.end(), [&](const RecordView& v) { return get(v) == get(views[0]); });
+  };
+  if (const auto text = views[0].text(name); text && same([&](const RecordView& v) { return v.text(name); }))
+    merged.set(name, std::string(*text));
+  if (const auto texts = views[0].texts(name); texts && same([&](const RecordView& v) { return v.texts(name); }))
+    merged.set(name, std::vector<std::string>(texts->begin(), texts->end()));
 }
 
 }  // namespace
@@ -79,15 +107,11 @@ SharedRecord merge_records(const std::vector<SharedRecord>& records, const std::
       merged.set("axis." + axes[a].path, texts);
     }
   }
-  for (const auto& attribute : views[0].attributes()) {
-    std::vector<double> numbers;
-    for (const auto& view : views)
-      if (const auto number = view.number(attribute.name())) numbers.push_back(*number);
-    if (numbers.size() != views.size() || views[0].array(attribute.name())) continue;
-    const auto out = merged.array<double>(std::string(attribute.name()), "", {numbers.size()});
-    std::copy(numbers.begin(), numbers.end(), out.begin());
-  }
-  for (const auto& array : views[0].arrays()) stack_array(merged, views, array);
+  for (const auto& attribute : views[0].attributes()) merge_attribute(merged, views, std::string(attribute.name()));
+  std::vector<std::string> apart;
+  for (const auto& array : views[0].arrays())
+    if (!stack_array(merged, views, array)) apart.emplace_back(array.name);
+  if (!apart.empty()) merged.set("not_merged", apart);  // of different shapes: they stand in the runs' own directories
   const std::vector<std::uint8_t> bytes = merged.bytes();
   return SharedRecord::copy(bytes.data(), bytes.size());
 }

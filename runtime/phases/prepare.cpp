@@ -1,6 +1,29 @@
 #include "phases/prepare.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 namespace bodeflow::phases {
+namespace {
+
+std::uint64_t physical_memory() {
+  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// Scheduled changes that no firing of their block is left for.
+void warn_of_late_changes(const graph::Phase& phase, plan::Facts& facts) {
+  for (const auto& change : phase.schedule) {
+    const auto& block = facts.blocks[static_cast<std::size_t>(change.block)];
+    if (block.firings < 0 || !block.firing_rate.known()) continue;
+    const double last_s = static_cast<double>(block.firings - 1) / block.firing_rate.hz();
+    if (change.time_s > last_s)
+      facts.warnings.push_back(to_string(
+          Problem{change.place, fmt::format("the change at {} s never happens: block '{}' fires for the last time at {} s",
+                                            change.time_s, phase.blocks[static_cast<std::size_t>(change.block)].name, last_s)}));
+  }
+}
+
+}  // namespace
 
 tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& registry,
                                          std::shared_ptr<const HostServices> services, const PlanSettings& settings) {
@@ -17,6 +40,13 @@ tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& re
     if (recorded.kind == BF_STREAM) options.kept.push_back(recorded.port);
   auto plan = plan::make_plan(phase, *facts, options);
   if (!plan) return tl::unexpected(plan.error());
+  const std::uint64_t memory = physical_memory();
+  if (plan->bytes > memory)
+    return tl::unexpected(Problems{
+        {phase.place, fmt::format("{}the buffers need {:.3g} GB, this machine has {:.3g} GB: a delay or a period is too long",
+                                  phase.name.empty() ? "" : fmt::format("phase '{}': ", phase.name),
+                                  static_cast<double>(plan->bytes) / 1e9, static_cast<double>(memory) / 1e9)}});
+  warn_of_late_changes(phase, *facts);
   return Prepared{std::move(*instances), std::move(*facts), std::move(*plan)};
 }
 

@@ -16,20 +16,13 @@ RunResult rejection(const graph::Phase& phase, Problems problems) {
   return {RunResult::Status::rejected, phase.name, "", to_string(problems), std::move(problems), false};
 }
 
-tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(const graph::Phase& phase,
-                                                                            const record::RunDirectory& directory) {
-  std::vector<execute::InitialRecord> records;
-  Problems problems;
-  for (const auto& reference : phase.references) {
-    SharedRecord record = directory.last_record(reference.phase, reference.block, reference.port);
-    if (record)
-      records.push_back({reference.to, std::move(record)});
-    else
-      problems.push_back({reference.place, fmt::format("'${}.{}.{}': that phase sent no such record", reference.phase,
-                                                       reference.block, reference.port)});
-  }
-  if (!problems.empty()) return tl::unexpected(std::move(problems));
-  return records;
+/// The seed of a phase's repetition: each has random numbers of its own. The only phase of a graph keeps the run's seed.
+std::uint64_t seed_of(const graph::Phase& phase, int repeat) {
+  std::uint64_t hash = phase.run.seed;
+  if (phase.name.empty() && repeat == 0) return hash;
+  for (const char c : fmt::format("{}@{}", phase.name, repeat))
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;  // FNV-1a
+  return hash;
 }
 
 RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDirectory& directory, const RunOptions& options,
@@ -40,7 +33,7 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
   if (!sink) return failure(phase, sink.error());
 
   execute::Options execution;
-  execution.seed = phase.run.seed;
+  execution.seed = seed_of(phase, repeat);
   execution.clock = phase.run.clock;
   execution.watchdog_s = phase.run.watchdog_s;
   execution.vector_level = options.vector_level;
@@ -75,6 +68,33 @@ tl::expected<bool, Problem> allowed(const std::optional<graph::Condition>& condi
 }
 
 }  // namespace
+
+const char* status_word(RunResult::Status status) {
+  switch (status) {
+    case RunResult::Status::complete:
+      return "complete";
+    case RunResult::Status::interrupted:
+      return "partial";
+    default:
+      return "failed";
+  }
+}
+
+tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(const graph::Phase& phase,
+                                                                            const record::RunDirectory& directory) {
+  std::vector<execute::InitialRecord> records;
+  Problems problems;
+  for (const auto& reference : phase.references) {
+    SharedRecord record = directory.last_record(reference.phase, reference.block, reference.port);
+    if (record)
+      records.push_back({reference.to, std::move(record)});
+    else
+      problems.push_back({reference.place, fmt::format("'${}.{}.{}': that phase sent no such record", reference.phase,
+                                                       reference.block, reference.port)});
+  }
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  return records;
+}
 
 tl::expected<std::vector<Prepared>, Problems> prepare_all(const graph::Graph& graph, Registry& registry, const Services& services,
                                                           const PlanSettings& settings) {
@@ -118,6 +138,9 @@ RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registr
         const auto enough = allowed(phase.until, directory);
         if (!enough) return rejection(phase, {enough.error()});
         if (*enough) break;
+        if (repeat + 1 == phase.repeat_max)
+          services.host()->log("phase " + phase.name, BF_LOG_WARNING,
+                               fmt::format("'until' was not met in {} repetitions", phase.repeat_max));
       }
     }
   }

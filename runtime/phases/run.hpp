@@ -28,6 +28,13 @@ struct RunResult {
   bool hung = false;  ///< a thread of a block could not be stopped: end the process without clean-up
 };
 
+/// What the manifest says of a run that ended so.
+const char* status_word(RunResult::Status status);
+
+/// The records of earlier phases that a phase refers to. Error: which was never sent, with its place.
+tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(const graph::Phase& phase,
+                                                                            const record::RunDirectory& directory);
+
 /// Prepares every phase once, so that all problems are known before anything runs.
 tl::expected<std::vector<Prepared>, Problems> prepare_all(const graph::Graph& graph, Registry& registry, const Services& services,
                                                           const PlanSettings& settings);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "graph/load.hpp"
@@ -43,6 +44,7 @@ SharedRecord read_record(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return {};
   const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (bytes.empty()) return {};
   return SharedRecord::copy(bytes.data(), bytes.size());
 }
 
@@ -68,7 +70,7 @@ std::vector<std::string> worker_arguments(const graph::Phase& phase, const recor
                                      (directory.path() / "sweep" / phase.name / "references").string(),
                                      "--vector-level",
                                      std::to_string(options.vector_level)};
-  for (const auto& folder : options.plugin_path) arguments.insert(arguments.end(), {"--path", folder});
+  for (const auto& place : options.plugin_path) arguments.insert(arguments.end(), {"--path", place});
   for (std::size_t a = 0; a < values.size(); ++a) {
     const std::string& path = phase.sweep[a].path;
     if (path == "seed") {
@@ -85,9 +87,41 @@ RunResult failed(const graph::Phase& phase, std::string reason) {
   return {RunResult::Status::failed, phase.name, "", std::move(reason), {}, false};
 }
 
+/// Merges what the runs sent, and takes over their hashes. Returns what is lost, empty: nothing.
+std::string merge_runs(const graph::Phase& phase, const fs::path& folder, const std::vector<std::vector<std::string>>& values,
+                       record::RunDirectory& directory) {
+  std::string lost;
+  for_each_message_output(phase, [&](const std::string& block, const std::string& port) {
+    std::vector<SharedRecord> records;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      records.push_back(read_record(record_file(folder / std::to_string(i) / "records", block, port)));
+    const auto missing = std::find_if(records.begin(), records.end(), [](const SharedRecord& record) { return !record; });
+    const bool none = std::none_of(records.begin(), records.end(), [](const SharedRecord& record) { return bool(record); });
+    if (none || !lost.empty()) return;
+    if (missing != records.end()) {
+      lost = fmt::format("run {} of the sweep: '{}.{}' sent no record, other runs did", missing - records.begin(), block, port);
+    } else if (const SharedRecord merged = merge_records(records, phase.sweep, values)) {
+      directory.set_result(phase.name, block, port, merged);
+    } else {
+      lost = fmt::format("the records of '{}.{}' can't be merged", block, port);
+    }
+  });
+  for (std::size_t i = 0; i < values.size() && lost.empty(); ++i) {
+    std::ifstream file(folder / std::to_string(i) / "manifest.json");
+    const auto manifest = nlohmann::json::parse(file, nullptr, false);
+    if (!manifest.is_object()) return fmt::format("run {} of the sweep left no manifest", i);
+    const auto own = manifest.value("hashes", nlohmann::json::object());
+    for (const auto& [key, hash] : own.items())
+      directory.add_hashes({{fmt::format("sweep/{}/{}/{}", phase.name, i, key), hash.get<std::string>()}});
+  }
+  return lost;
+}
+
 }  // namespace
 
 RunResult run_sweep(const graph::Graph&, const graph::Phase& phase, record::RunDirectory& directory, const RunOptions& options) {
+  if (const auto known = initial_records(phase, directory); !known)
+    return {RunResult::Status::rejected, phase.name, "", to_string(known.error()), known.error(), false};
   const auto values = combinations(phase.sweep);
   const fs::path folder = directory.path() / "sweep" / phase.name;
   try {
@@ -109,15 +143,7 @@ RunResult run_sweep(const graph::Graph&, const graph::Phase& phase, record::RunD
   if (pool.interrupted) return {RunResult::Status::interrupted, phase.name, "", "interrupted", {}, false};
   if (pool.failed) return failed(phase, fmt::format("run {} of the sweep failed: {}", *pool.failed, pool.message));
 
-  for_each_message_output(phase, [&](const std::string& block, const std::string& port) {
-    std::vector<SharedRecord> records;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      SharedRecord record = read_record(record_file(folder / std::to_string(i) / "records", block, port));
-      if (!record) return;
-      records.push_back(std::move(record));
-    }
-    directory.set_result(phase.name, block, port, merge_records(records, phase.sweep, values));
-  });
+  if (const std::string lost = merge_runs(phase, folder, values, directory); !lost.empty()) return failed(phase, lost);
   directory.event("sweep ends", {{"phase", phase.name}});
   return {};
 }
@@ -157,7 +183,12 @@ RunResult run_worker(const WorkerTask& task, Registry& registry, const RunOption
       result = failed(phase, error.what());
     }
   }
-  const auto closed = (*directory)->close(result.status == RunResult::Status::complete ? "complete" : "failed", result.reason);
+  const auto closed = (*directory)->close(status_word(result.status), result.reason);
+  if (result.hung) {  // the block's thread lives on and may still look at all this
+    (void)directory->release();
+    (void)new graph::Graph(std::move(*graph));
+    (void)new Services(std::move(services));
+  }
   if (!closed && result.status == RunResult::Status::complete) return failed(phase, closed.error());
   return result;
 }

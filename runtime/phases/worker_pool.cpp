@@ -44,7 +44,8 @@ int start(const std::vector<std::string>& command, Child& child, pid_t& pid) {
 
 std::string text_of(int file) {
   std::string text(4096, '\0');
-  const ssize_t size = pread(file, text.data(), text.size(), 0);
+  const off_t all = lseek(file, 0, SEEK_END), first = std::max<off_t>(0, all - static_cast<off_t>(text.size()));
+  const ssize_t size = pread(file, text.data(), text.size(), first);
   text.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text;
@@ -63,10 +64,11 @@ PoolResult run_processes(const std::vector<std::vector<std::string>>& commands, 
   std::map<pid_t, Child> running;
   const std::size_t limit = std::max(1U, std::thread::hardware_concurrency());
   std::size_t next = 0, ended = 0;
-  const auto fail = [&](std::size_t index, std::string message) {
+  const auto fail = [&](std::size_t index, std::string message, int exit_code) {
     if (!result.failed || index < *result.failed) {
       result.failed = index;
       result.message = std::move(message);
+      result.exit_code = exit_code;
     }
   };
   bool told = false;
@@ -76,13 +78,13 @@ PoolResult run_processes(const std::vector<std::vector<std::string>>& commands, 
       Child child{next, -1};
       pid_t pid = 0;
       if (const int error = start(commands[next], child, pid); error != 0)
-        fail(next, fmt::format("can't start '{}': {}", commands[next][0], strerror(error)));
+        fail(next, fmt::format("can't start '{}': {}", commands[next][0], strerror(error)), 1);
       else
         running.emplace(pid, child);
       ++next;
     }
-    if (stopping && !told) {
-      for (const auto& [pid, child] : running) kill(pid, SIGINT);
+    if (stopping && !told && (!running.empty() || next < commands.size())) {
+      for (const auto& [pid, child] : running) kill(pid, SIGTERM);
       told = true;
       result.interrupted = true;
     }
@@ -91,13 +93,15 @@ PoolResult run_processes(const std::vector<std::vector<std::string>>& commands, 
     bool any = false;
     for (auto it = running.begin(); it != running.end();) {
       int status = 0;
-      if (waitpid(it->first, &status, WNOHANG) != it->first) {
+      const pid_t reaped = waitpid(it->first, &status, WNOHANG);
+      if (reaped < 0 && errno != EINTR) status = 1 << 8;  // somebody ignores SIGCHLD: how it ended can't be known
+      if (reaped == 0 || (reaped < 0 && errno == EINTR)) {
         ++it;
         continue;
       }
       if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
         const std::string said = text_of(it->second.errors);
-        fail(it->second.index, said.empty() ? ending(status) : said);
+        fail(it->second.index, said.empty() ? ending(status) : said, WIFEXITED(status) ? WEXITSTATUS(status) : 1);
       }
       close(it->second.errors);
       it = running.erase(it);

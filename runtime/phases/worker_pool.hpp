@@ -11,7 +11,8 @@ namespace bodeflow::phases {
 
 struct PoolResult {
   std::optional<std::size_t> failed;  ///< lowest index of a command that did not exit with 0
-  std::string message;                ///< what it said on standard error, or how it ended
+  std::string message;                ///< the end of what it said on standard error, or how it ended
+  int exit_code = 0;                  ///< of it; 1 when it was ended by a signal
   bool interrupted = false;
 };
 

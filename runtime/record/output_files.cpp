@@ -76,6 +76,7 @@ tl::expected<std::string, std::string> OutputFiles::claim(const std::string& blo
   if (fs::exists(fs::symlink_status(full, error))) return refuse("it exists in the run directory already");
 
   claims_[normal.string()] = {block, phase_, times};
+  files_.emplace(relative.string(), full);
   return full.string();
 }
 

@@ -17,6 +17,9 @@ class OutputFiles {
   /// the run's own files, exists, or was given out in this phase or to another block.
   tl::expected<std::string, std::string> claim(const std::string& block, const std::string& name);
 
+  /// The absolute paths given out, by their names in the run directory; not all need have been written.
+  const std::map<std::string, std::filesystem::path>& files() const { return files_; }
+
   /// Another phase or repetition begins.
   void next_phase() { ++phase_; }
 
@@ -29,6 +32,7 @@ class OutputFiles {
 
   std::filesystem::path directory_;
   std::map<std::string, Claim> claims_;  ///< by name
+  std::map<std::string, std::filesystem::path> files_;
   int phase_ = 0;
 };
 

@@ -234,6 +234,11 @@ void RunDirectory::set_result(const std::string& phase, const std::string& block
   state_->results.set(phase, block, port, record);
 }
 
+void RunDirectory::add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes) {
+  const std::lock_guard lock(state_->mutex);
+  state_->manifest.add_hashes(hashes);
+}
+
 tl::expected<void, std::string> RunDirectory::close(const std::string& status, const std::string& reason) {
   State& state = *state_;
   if (state.closed) return {};
@@ -250,6 +255,8 @@ tl::expected<void, std::string> RunDirectory::close(const std::string& status, c
   state.keep_first_error(state.write_result());
   {
     const std::lock_guard lock(state.mutex);
+    for (const auto& [name, file] : state.outputs.files())
+      if (const auto hash = sha256_of_file(file)) state.manifest.add_hashes({{"files/" + name, *hash}});
     state.manifest.end(status, reason);
     state.keep_first_error(state.manifest.write(true));
   }

@@ -43,7 +43,11 @@ class RunDirectory {
   /// Puts a record into the results (merged sweeps).
   void set_result(const std::string& phase, const std::string& block, const std::string& port, const SharedRecord& record);
 
-  /// Writes result.json and the manifest's closing part. `status`: "complete", "partial" or "failed".
+  /// Adds hashes that were made elsewhere (the runs of a sweep) to the manifest's.
+  void add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes);
+
+  /// Writes result.json and the manifest's closing part; hashes the files that blocks wrote. `status`: "complete", "partial" or
+  /// "failed".
   tl::expected<void, std::string> close(const std::string& status, const std::string& reason);
 
   /// What result.json holds.

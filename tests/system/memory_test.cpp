@@ -4,6 +4,8 @@
 #include <malloc.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <new>
 
 #include "catch.hpp"
 #include "execute/execute.hpp"
@@ -17,11 +19,19 @@ std::atomic<std::uint64_t> counted{0};
 
 }  // namespace
 
-/// Buffers are the only memory that the executor asks for by alignment.
+/// Buffers come from here.
 extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
   if (armed) counted += size;
   return memalign(alignment, size);
 }
+
+/// Objects with an alignment of their own are no buffers.
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  if (void* memory = memalign(static_cast<std::size_t>(alignment), size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 namespace {
 

@@ -81,6 +81,29 @@ TEST_CASE("a phase repeats until its condition holds, at most as often as it say
   CHECK_THAT(folder.read("out/events.jsonl"), Contains("again"));
 }
 
+TEST_CASE("every repetition of a phase has noise of its own, and an until that is never met is said") {
+  const Folder folder;
+  folder.write("graph.yaml",
+               "bodeflow: 1\nphases:\n" +
+                   measurement("again", "    record: [noise]\n    repeat: {max: 2, until: $again.dft.periods > 100}\n"));
+  const auto ended = run_bodeflow({"run", "graph.yaml", "--out", "out"}, folder.path());
+  INFO(ended.err);
+  REQUIRE(ended.exit_code == 0);
+  CHECK_THAT(ended.err, Contains("'until' was not met in 2 repetitions"));
+  const auto hashes = nlohmann::json::parse(folder.read("out/manifest.json"))["hashes"];
+  CHECK(hashes["again.noise.out"] != hashes["again@2.noise.out"]);
+}
+
+TEST_CASE("rerun compares every run of a sweep") {
+  const Folder folder;
+  folder.write("graph.yaml", "bodeflow: 1\nphases:\n" + measurement("many", "    sweep: {seed: 1..2}\n"));
+  REQUIRE(run_bodeflow({"run", "graph.yaml", "--out", "out"}, folder.path()).exit_code == 0);
+  const auto hashes = nlohmann::json::parse(folder.read("out/manifest.json"))["hashes"];
+  CHECK(hashes.contains("sweep/many/0/many.dft.out"));
+  CHECK(hashes["sweep/many/0/many.dft.out"] != hashes["sweep/many/1/many.dft.out"]);
+  CHECK(run_bodeflow({"rerun", "out", "--out", "again"}, folder.path()).exit_code == 0);
+}
+
 TEST_CASE("a failing run of a sweep is named by its index") {
   const Folder folder;
   folder.write("graph.yaml", "bodeflow: 1\nphases:\n" + measurement("bad", "    sweep: {dft.period: [100, 100000]}\n"));

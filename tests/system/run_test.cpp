@@ -49,7 +49,7 @@ TEST_CASE("a directory that holds a run is not written over") {
   CHECK(folder.read("out/manifest.json") == before);
 }
 
-TEST_CASE("--dry-run shows the plan and makes nothing") {
+TEST_CASE("a dry run shows the plan and makes nothing") {
   const Folder folder;
   folder.write("tone.yaml", kTone);
   const auto ended = run_bodeflow({"run", "tone.yaml", "--out", "out", "--dry-run"}, folder.path());
@@ -58,7 +58,7 @@ TEST_CASE("--dry-run shows the plan and makes nothing") {
   CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
-TEST_CASE("--for sets the duration, --set a parameter, --json prints the results alone") {
+TEST_CASE("the duration is set by --for, a parameter by --set, and --json prints the results alone") {
   const Folder folder;
   folder.write("tone.yaml", kTone);
   const auto ended =
@@ -132,6 +132,26 @@ TEST_CASE("rerun repeats a run bit for bit, and tells when it does not") {
   CHECK(differs.exit_code == 1);
   CHECK_THAT(differs.err, Contains("not identical: twice.out"));
   CHECK(run_bodeflow({"rerun", "nowhere"}, folder.path()).exit_code == 2);
+}
+
+TEST_CASE("rerun compares the files that blocks wrote, and refuses a run that did not end well") {
+  const Folder folder;
+  folder.write("noise.yaml",
+               "bodeflow: 1\nrun: {duration: 1 s, seed: 5}\nblocks:\n  noise: {block: generators.noise, sample_rate: 1 kHz}\n"
+               "  table: {block: output.csv, file: noise.csv}\nconnections:\n  - noise -> table\n");
+  REQUIRE(run_bodeflow({"run", "noise.yaml", "--out", "first"}, folder.path()).exit_code == 0);
+  CHECK(run_bodeflow({"rerun", "first", "--out", "same"}, folder.path()).exit_code == 0);
+  std::string graph = folder.read("first/graph.yaml");
+  graph.replace(graph.find("seed: 5"), 7, "seed: 6");
+  folder.write("first/graph.yaml", graph);
+  const auto differs = run_bodeflow({"rerun", "first", "--out", "other"}, folder.path());
+  CHECK(differs.exit_code == 1);
+  CHECK_THAT(differs.err, Contains("not identical: files/noise.csv"));
+
+  auto manifest = nlohmann::json::parse(folder.read("same/manifest.json"));
+  manifest["status"] = "partial";
+  folder.write("same/manifest.json", manifest.dump());
+  CHECK(run_bodeflow({"rerun", "same", "--out", "never"}, folder.path()).exit_code == 2);
 }
 
 TEST_CASE("a block that writes outside the run directory is refused with its name") {

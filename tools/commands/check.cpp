@@ -3,12 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/command.hpp"
+#include "commands/plans.hpp"
 #include "phases/run.hpp"
 
 namespace bodeflow::tools {
 namespace {
 
-int check(const Session& session, const GraphOptions& options, bool as_json) {
+int check(const Session& session, const GraphOptions& options) {
   Registry registry = session.open_registry();
   const auto graph = options.load(registry);
   if (!graph) return graph.error();
@@ -16,24 +17,21 @@ int check(const Session& session, const GraphOptions& options, bool as_json) {
     if (level >= BF_LOG_INFO) say(block + ": " + text);
   });
   const auto prepared = phases::prepare_all(*graph, registry, services, {});
-  if (!prepared) {
-    say_problems(prepared.error());
-    return kRejected;
-  }
+  if (!prepared) return options.reject(prepared.error());
+  say_warnings(*prepared);
   nlohmann::ordered_json phases = nlohmann::json::array();
   for (std::size_t i = 0; i < graph->phases.size(); ++i) {
     const auto& phase = graph->phases[i];
-    for (const auto& warning : (*prepared)[i].facts.warnings) say_warning(warning);
     phases.push_back({{"name", phase.name},
                       {"blocks", phase.blocks.size()},
                       {"connections", phase.streams.size() + phase.messages.size()},
                       {"warnings", (*prepared)[i].facts.warnings}});
-    if (!as_json)
+    if (!options.json)
       fmt::print("{}{}: {} blocks, {} connections, right\n", options.file,
                  phase.name.empty() ? "" : ", phase '" + phase.name + "'", phase.blocks.size(),
                  phase.streams.size() + phase.messages.size());
   }
-  if (as_json) fmt::print("{}\n", nlohmann::ordered_json{{"graph", options.file}, {"phases", phases}}.dump(2));
+  if (options.json) fmt::print("{}\n", nlohmann::ordered_json{{"graph", options.file}, {"phases", phases}}.dump(2));
   return kDone;
 }
 
@@ -42,11 +40,9 @@ int check(const Session& session, const GraphOptions& options, bool as_json) {
 void add_check(CLI::App& app, Session& session) {
   auto* command = app.add_subcommand("check", "Say everything that is wrong with a graph, without running it");
   auto options = std::make_shared<GraphOptions>();
-  auto json = std::make_shared<bool>(false);
   options->add_to(*command);
-  command->add_flag("--json", *json, "Print JSON");
-  command->callback(
-      [&session, options, json] { session.action = [&session, options, json] { return check(session, *options, *json); }; });
+  options->add_json_to(*command);
+  command->callback([&session, options] { session.action = [&session, options] { return check(session, *options); }; });
 }
 
 }  // namespace bodeflow::tools

@@ -1,6 +1,9 @@
 #include "commands/command.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <random>
 
 namespace bodeflow::tools {
@@ -44,13 +47,13 @@ tl::expected<graph::Graph, int> GraphOptions::load(const Registry& registry) con
     }
     options.overrides.emplace_back(set.substr(0, equal), set.substr(equal + 1));
   }
-  if (!duration.empty()) options.overrides.emplace_back("run.duration", duration);
+  options.duration = duration;
   if (seed == "random") {
     options.seed = std::random_device{}();
   } else if (!seed.empty()) {
     std::size_t used = 0;
     try {
-      if (seed[0] == '-') throw std::invalid_argument(seed);
+      if (seed.find_first_not_of("0123456789") != std::string::npos) throw std::invalid_argument(seed);
       options.seed = std::stoull(seed, &used);
     } catch (const std::exception&) {
       used = 0;
@@ -61,11 +64,22 @@ tl::expected<graph::Graph, int> GraphOptions::load(const Registry& registry) con
     }
   }
   auto graph = graph::load(file, options, registry);
-  if (!graph) {
-    say_problems(graph.error());
-    return tl::unexpected(static_cast<int>(kRejected));
-  }
+  if (!graph) return tl::unexpected(reject(graph.error()));
   return std::move(*graph);
+}
+
+void GraphOptions::add_json_to(CLI::App& app) { app.add_flag("--json", json, "Print JSON"); }
+
+int GraphOptions::reject(const Problems& problems) const {
+  say_problems(problems);
+  if (json) {
+    nlohmann::ordered_json all = nlohmann::json::array();
+    for (const auto& problem : problems)
+      all.push_back(
+          {{"file", problem.place.file}, {"line", problem.place.line}, {"column", problem.place.column}, {"text", problem.text}});
+    fmt::print("{}\n", nlohmann::ordered_json{{"graph", file}, {"problems", all}}.dump(2));
+  }
+  return kRejected;
 }
 
 }  // namespace bodeflow::tools

@@ -27,10 +27,14 @@ struct GraphOptions {
   std::vector<std::string> sets;
   std::string seed;
   std::string duration;
+  bool json = false;
 
   void add_to(CLI::App& app);
+  void add_json_to(CLI::App& app);
   /// The loaded graph; on failure says every problem and gives the exit code.
   tl::expected<graph::Graph, int> load(const Registry& registry) const;
+  /// Says every problem, with --json also as JSON on standard output; gives the exit code.
+  int reject(const Problems& problems) const;
 };
 
 // One function a command, each in the file of its name: adds itself to the application.

@@ -1,3 +1,6 @@
+#include <signal.h>
+#include <sys/prctl.h>
+
 #include "commands/command.hpp"
 #include "commands/interrupt.hpp"
 #include "phases/sweep.hpp"
@@ -28,13 +31,16 @@ int work(const Session& session, WorkerCommand& command, bool seeded) {
   }
   if (seeded) command.task.seed = command.seed;
   command.run.stop = &stop_on_interrupt();
+  signal(SIGINT, SIG_IGN);  // of the terminal: the run that started this passes it on as SIGTERM
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
   command.run.plan.threads = 1;
   Registry registry = session.open_registry();
   const phases::RunResult result = phases::run_worker(command.task, registry, command.run);
   if (result.status == phases::RunResult::Status::complete) return kDone;
   say(result.block.empty() ? result.reason : "block '" + result.block + "': " + result.reason);
   if (result.hung) std::_Exit(kRunFailed);
-  return result.status == phases::RunResult::Status::interrupted ? kInterrupted : kRunFailed;
+  if (result.status == phases::RunResult::Status::interrupted) return kInterrupted;
+  return result.status == phases::RunResult::Status::rejected ? kRejected : kRunFailed;
 }
 
 void add_worker(CLI::App& app, Session& session) {

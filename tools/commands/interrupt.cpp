@@ -22,6 +22,7 @@ const std::atomic<bool>& stop_on_interrupt() {
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
   return stop;
 }
 

@@ -59,6 +59,10 @@ int rerun(const Session& session, const RerunCommand& command) {
     say_error(manifest.error());
     return kUsage;
   }
+  if (const std::string status = manifest->value("status", "?"); status != "complete") {
+    say_error(fmt::format("the run in '{}' is {}: only a complete run can be repeated and compared", command.directory, status));
+    return kUsage;
+  }
   RunGraph options;
   options.vector_level = vector_level_of(manifest->value("vector_level", ""));
   if (options.vector_level == 0 || options.vector_level > processor_vector_level()) {
@@ -77,6 +81,7 @@ int rerun(const Session& session, const RerunCommand& command) {
   if (const int threads = options.command.value("threads", 0); threads > 0) options.plan.threads = threads;
   if (const std::int64_t chunk = options.command.value("chunk", std::int64_t{0}); chunk > 0) options.plan.chunk = chunk;
   options.out = command.out;
+  options.graph_name = manifest->value("graph", "");
   options.executable = session.executable;
   options.plugin_path = session.plugin_path;
   const RanGraph ran = run_graph(*graph, registry, options);
@@ -89,6 +94,10 @@ int rerun(const Session& session, const RerunCommand& command) {
   }
   const auto different = differences(*manifest, *again);
   const std::size_t count = again->value("hashes", nlohmann::json::object()).size();
+  if (count == 0 && different.empty()) {
+    say_error("the run kept nothing that could be compared; 'record: all' in the graph keeps every stream");
+    return kRunFailed;
+  }
   if (command.json)
     fmt::print(
         "{}\n",

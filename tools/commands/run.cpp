@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include "commands/command.hpp"
+#include "commands/plans.hpp"
 #include "commands/run_graph.hpp"
 #include "commands/vector_level.hpp"
 #include "console/summary.hpp"
@@ -16,20 +17,14 @@ struct RunCommand {
   std::int64_t chunk = 0;
   std::string isa;
   bool dry_run = false;
-  bool json = false;
 };
 
-int dry_run(const graph::Graph& graph, Registry& registry, const phases::PlanSettings& settings) {
+int dry_run(const RunCommand& command, const graph::Graph& graph, Registry& registry, const phases::PlanSettings& settings) {
   const auto prepared = phases::prepare_all(graph, registry, phases::Services(), settings);
-  if (!prepared) {
-    say_problems(prepared.error());
-    return kRejected;
-  }
-  for (std::size_t i = 0; i < graph.phases.size(); ++i) {
-    if (!graph.phases[i].name.empty()) fmt::print("{}\n", bold("phase " + graph.phases[i].name));
-    fmt::print("{}", plan::to_text(graph.phases[i], (*prepared)[i].facts, (*prepared)[i].plan));
-  }
-  fmt::print("Nothing was run.\n");
+  if (!prepared) return command.graph.reject(prepared.error());
+  say_warnings(*prepared);
+  print_plans(graph, *prepared, command.graph.json);
+  if (!command.graph.json) fmt::print("Nothing was run.\n");
   return kDone;
 }
 
@@ -45,7 +40,7 @@ int run(const Session& session, const RunCommand& command) {
   if (!graph) return graph.error();
   if (command.threads > 0) options.plan.threads = command.threads;
   if (command.chunk > 0) options.plan.chunk = command.chunk;
-  if (command.dry_run) return dry_run(*graph, registry, options.plan);
+  if (command.dry_run) return dry_run(command, *graph, registry, options.plan);
 
   options.out = command.out;
   options.executable = session.executable;
@@ -53,7 +48,7 @@ int run(const Session& session, const RunCommand& command) {
   options.command = {{"threads", command.threads}, {"chunk", command.chunk}};
   const RanGraph ran = run_graph(*graph, registry, options);
   if (ran.directory.empty()) return ran.exit_code;
-  if (command.json) {
+  if (command.graph.json) {
     nlohmann::ordered_json printed = ran.result;
     printed["directory"] = ran.directory.string();
     fmt::print("{}\n", printed.dump(2));
@@ -78,7 +73,7 @@ void add_run(CLI::App& app, Session& session) {
   command->add_option("--isa", options->isa, "Widest vector unit of kernels (this processor's otherwise)")
       ->check(CLI::IsMember(vector_level_names()));
   command->add_flag("--dry-run", options->dry_run, "Check and plan, show what would run, run nothing");
-  command->add_flag("--json", options->json, "Print the results as JSON");
+  options->graph.add_json_to(*command);
   command->callback([&session, options] { session.action = [&session, options] { return run(session, *options); }; });
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "commands/interrupt.hpp"
+#include "commands/plans.hpp"
 #include "commands/vector_level.hpp"
 #include "console/console.hpp"
 
@@ -38,17 +39,6 @@ nlohmann::json manifest_of(const graph::Graph& graph, const Registry& registry, 
           {"plugins", plugins}};
 }
 
-const char* status_word(phases::RunResult::Status status) {
-  switch (status) {
-    case phases::RunResult::Status::complete:
-      return "complete";
-    case phases::RunResult::Status::interrupted:
-      return "partial";
-    default:
-      return "failed";
-  }
-}
-
 int exit_code_of(phases::RunResult::Status status) {
   switch (status) {
     case phases::RunResult::Status::complete:
@@ -77,7 +67,6 @@ void say_result(const phases::RunResult& result, const std::filesystem::path& di
 }  // namespace
 
 RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph& options) {
-  const std::atomic<bool>& stop = stop_on_interrupt();
   ProgressLine progress;
   phases::Services services([&progress](const std::string& block, int level, const std::string& text) {
     if (level < BF_LOG_INFO) return;
@@ -92,15 +81,17 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
     say_problems(prepared.error());
     return {kRejected, {}, {}};
   }
-  for (const auto& phase : *prepared)
-    for (const auto& warning : phase.facts.warnings) say_warning(warning);
+  say_warnings(*prepared);
 
   auto directory = record::RunDirectory::create(
-      {options.out, std::filesystem::path(graph.file).stem().string(), manifest_of(graph, registry, options)}, graph);
+      {options.out, options.graph_name.empty() ? std::filesystem::path(graph.file).stem().string() : options.graph_name,
+       manifest_of(graph, registry, options)},
+      graph);
   if (!directory) {
     say_error(directory.error());
     return {kRunFailed, {}, {}};
   }
+  const std::atomic<bool>& stop = stop_on_interrupt();  // until here there is nothing to keep
   services.attach(**directory);
 
   phases::RunOptions run;
@@ -113,7 +104,7 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
   const phases::RunResult result = phases::run(graph, std::move(*prepared), registry, **directory, services, run);
   progress.clear();
 
-  const auto closed = (*directory)->close(status_word(result.status), result.reason);
+  const auto closed = (*directory)->close(phases::status_word(result.status), result.reason);
   RanGraph ran{exit_code_of(result.status), (*directory)->path(), (*directory)->result()};
   say_result(result, ran.directory);
   if (!closed) {

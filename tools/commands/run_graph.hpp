@@ -8,10 +8,11 @@ namespace bodeflow::tools {
 
 struct RunGraph {
   std::filesystem::path out;  ///< run directory; empty: below runs/
+  std::string graph_name;     ///< empty: the file's, without its extension
   phases::PlanSettings plan;
   std::uint32_t vector_level = 1;
-  nlohmann::json command;  ///< what `rerun` must repeat, for the manifest
-  std::filesystem::path executable;       ///< our own, for the workers of sweeps, with their --path
+  nlohmann::json command;            ///< what `rerun` must repeat, for the manifest
+  std::filesystem::path executable;  ///< our own, for the workers of sweeps, with their --path
   std::vector<std::string> plugin_path;
 };
 

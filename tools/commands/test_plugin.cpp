@@ -18,6 +18,11 @@ struct TestCommand {
 
 /// The suite is a program of its own, which counts allocations and locks in place of the C library.
 int test_plugin(const Session& session, const TestCommand& command) {
+  std::error_code unknown;
+  if (std::filesystem::exists(command.file, unknown) && !std::filesystem::is_regular_file(command.file, unknown)) {
+    say_error(fmt::format("{}: is not a regular file", command.file));
+    return kPlugin;
+  }
   constexpr double kProbeSeconds = 30.0;
   const PluginDescription plugin = probe(std::filesystem::absolute(command.file), session.executable, kProbeSeconds);
   if (!plugin.refused.empty()) {

@@ -22,16 +22,19 @@ std::string painted(int file, const char* code, const std::string& text) {
   return coloured(file) ? fmt::format("\033[{}m{}\033[0m", code, text) : text;
 }
 
+/// A lost terminal must not end a run: what can't be printed is left out.
+void print_error(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }
+
 }  // namespace
 
-void say(const std::string& text) { fmt::print(stderr, "{}\n", text); }
-void say_warning(const std::string& text) { fmt::print(stderr, "{} {}\n", painted(STDERR_FILENO, "33", "warning:"), text); }
-void say_error(const std::string& text) { fmt::print(stderr, "{} {}\n", painted(STDERR_FILENO, "31", "error:"), text); }
+void say(const std::string& text) { print_error(text + "\n"); }
+void say_warning(const std::string& text) { print_error(fmt::format("{} {}\n", painted(STDERR_FILENO, "33", "warning:"), text)); }
+void say_error(const std::string& text) { print_error(fmt::format("{} {}\n", painted(STDERR_FILENO, "31", "error:"), text)); }
 
 void say_problems(const Problems& problems) {
-  for (const auto& problem : problems) fmt::print(stderr, "{}\n", to_string(problem));
-  fmt::print(stderr, "{}\n",
-             painted(STDERR_FILENO, "31", problems.size() == 1 ? "1 problem" : fmt::format("{} problems", problems.size())));
+  for (const auto& problem : problems) print_error(fmt::format("{}\n", to_string(problem)));
+  print_error(fmt::format(
+      "{}\n", painted(STDERR_FILENO, "31", problems.size() == 1 ? "1 problem" : fmt::format("{} problems", problems.size()))));
 }
 
 std::string bold(const std::string& text) { return painted(STDOUT_FILENO, "1", text); }
@@ -63,14 +66,14 @@ void ProgressLine::show(const std::string& phase, const execute::Progress& progr
   } else {
     line += duration_text(progress.time_s) + " of signal";
   }
-  fmt::print(stderr, "\r{}\033[K", line);
+  print_error(fmt::format("\r{}\033[K", line));
   std::fflush(stderr);
   state_->shown = true;
 }
 
 void ProgressLine::clear() {
   const std::lock_guard lock(state_->mutex);
-  if (state_->shown) fmt::print(stderr, "\r\033[K");
+  if (state_->shown) print_error("\r\033[K");
   state_->shown = false;
 }
 

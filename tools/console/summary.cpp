@@ -28,7 +28,8 @@ std::vector<std::size_t> shown_lines(const Json& frequency) {
     return all;
   }
   std::set<std::size_t> lines;
-  const double low = std::log(std::max(number(frequency.front()), 1e-300)), high = std::log(number(frequency.back()));
+  const double least = number(frequency.front()) > 0.0 ? number(frequency.front()) : number(frequency[1]);
+  const double low = std::log(least), high = std::log(number(frequency.back()));
   for (int i = 0; i < kLines; ++i) {
     const double wanted = std::exp(low + (high - low) * i / (kLines - 1));
     const auto nearest = std::min_element(frequency.begin(), frequency.end(), [&](const Json& a, const Json& b) {
@@ -41,7 +42,8 @@ std::vector<std::size_t> shown_lines(const Json& frequency) {
 
 std::string channel_name(const Json& record, const char* attribute, std::size_t index) {
   const auto& attributes = record["attributes"];
-  if (attributes.contains(attribute) && attributes[attribute].is_array() && index < attributes[attribute].size())
+  if (attributes.contains(attribute) && attributes[attribute].is_array() && index < attributes[attribute].size() &&
+      attributes[attribute][index].is_string())
     return attributes[attribute][index].get<std::string>();
   return std::to_string(index + 1);
 }
@@ -70,6 +72,17 @@ void print_response(const Json& record) {
     }
 }
 
+/// Whether a record has all that the table needs, in the shapes of its type: it may come from anybody's block.
+bool is_response(const Json& record) {
+  const Json& arrays = record["arrays"];
+  for (const char* name : {"frequency", "response", "variance"})
+    if (!arrays.contains(name) || arrays[name]["data"].empty()) return false;
+  const Json& response = arrays["response"];
+  return record["type"] == "frequency_response" && response["shape"].size() == 3 && response["data"].front().is_array() &&
+         response["data"].size() == arrays["variance"]["data"].size() &&
+         response["shape"][0] == arrays["frequency"]["data"].size();
+}
+
 void print_other(const Json& record) {
   for (const auto& [name, value] : record["attributes"].items()) {
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
@@ -88,9 +101,7 @@ void print_summary(const Json& result) {
   if (!result.contains("results")) return;
   for (const auto& [name, record] : result["results"].items()) {
     fmt::print("{}: {}\n", bold(name), record["type"].get<std::string>());
-    const bool response = record["type"] == "frequency_response" && record["arrays"].contains("response") &&
-                          record["arrays"].contains("variance") && record["arrays"].contains("frequency") &&
-                          !record["arrays"]["frequency"]["data"].empty();
+    const bool response = is_response(record);
     if (response)
       print_response(record);
     else

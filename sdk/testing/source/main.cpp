@@ -37,5 +37,5 @@ int main(int count, char** arguments) {
   }
   const auto report = bodeflow::testing::check_plugin(file, options);
   std::fputs(bodeflow::testing::to_text(report, all).c_str(), stdout);
-  return report.passed() ? 0 : 1;
+  return report.passed() ? 0 : 4;
 }

@@ -12,8 +12,8 @@ namespace bodeflow::graph {
 
 struct LoadOptions {
   std::vector<std::pair<std::string, std::string>> overrides;  ///< --set PATH=VALUE, in order
-  std::optional<std::uint64_t> seed;                           ///< --seed
-  std::string duration;                                        ///< --for; empty: as the graph says
+  std::optional<std::uint64_t> seed{};                         ///< --seed
+  std::string duration{};                                      ///< --for; empty: as the graph says
 };
 
 /// The checked graph of a YAML file, or every problem in it at once. Reads files, runs no code of a plugin.

@@ -106,12 +106,14 @@ void latency(int repeats) {
 
 }  // namespace
 
+// bench_runtime [REPEATS] [multiply|feedback|latency|heavy]
 int main(int argc, char** argv) {
   const int repeats = argc > 1 ? std::stoi(argv[1]) : 7;
-  multiply(1, repeats);
-  multiply(4, repeats);
-  multiply(16, repeats);
-  feedback(repeats);
-  latency(repeats);
-  heavy(repeats);
+  const std::string only = argc > 2 ? argv[2] : "";
+  const auto wanted = [&](const char* name) { return only.empty() || only == name; };
+  if (wanted("multiply"))
+    for (const int blocks : {1, 4, 16}) multiply(blocks, repeats);
+  if (wanted("feedback")) feedback(repeats);
+  if (wanted("latency")) latency(repeats);
+  if (wanted("heavy")) heavy(repeats);
 }

@@ -36,7 +36,7 @@ class Hang {
   /// contract says; the others may go.
   ~Hang() {
     char byte = 'x';
-    if (write(release_[1], &byte, 1) == 1 && read(left_[0], &byte, 1) == 1) static_cast<void>(instances_[1].release());
+    if (write(release_[1], &byte, 1) == 1 && read(left_[0], &byte, 1) == 1) left_behind().push_back(std::move(instances_[1]));
     for (const int end : {release_[0], release_[1], left_[0], left_[1]}) close(end);
   }
 
@@ -45,6 +45,12 @@ class Hang {
   Bench bench;
 
  private:
+  /// Never destroyed, and still within reach.
+  static std::vector<std::unique_ptr<Instance>>& left_behind() {
+    static auto* const instances = new std::vector<std::unique_ptr<Instance>>;
+    return *instances;
+  }
+
   int release_[2] = {-1, -1}, left_[2] = {-1, -1};
   std::vector<std::unique_ptr<Instance>> instances_;
 };

@@ -194,7 +194,7 @@ void add_partition(Run& run, int index) {
   if (most == 0) partition.full_periods = 0;
   // Looks at the clock stay below 5 % of the work also where a chunk is one sample.
   constexpr std::int64_t kShortChunk = 256;
-  partition.timing = most >= kShortChunk ? 16 : 256;
+  partition.timing = most >= kShortChunk ? 64 : 256;
   run.control.watch(partition.signal);
 }
 

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "plugins/sha256.hpp"
 #include "record/files.hpp"
 #include "record/json_text.hpp"
 #include "record/run_directory.hpp"
@@ -79,7 +80,7 @@ bool Manifest::add_input(const std::string& block, const std::string& path) {
   ordered_json input;
   input["path"] = absolute.string();
   input["blocks"] = {block};
-  const auto hash = sha256_file(absolute);
+  const auto hash = sha256_of_file(absolute);
   const auto size = fs::file_size(absolute, error);
   if (hash && !error) {
     input["size"] = size;

@@ -268,6 +268,4 @@ tl::expected<void, std::string> RunDirectory::close(const std::string& status, c
 
 ordered_json RunDirectory::result() const { return state_->result(); }
 
-tl::expected<std::string, std::string> sha256_file(const fs::path& path) { return sha256_of_file(path); }
-
 }  // namespace bodeflow::record

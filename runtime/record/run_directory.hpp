@@ -64,7 +64,4 @@ nlohmann::ordered_json to_json(const SharedRecord& record);
 /// And back, for records that come from a result.json (references of a repeated phase, sweep workers). Error: why not.
 tl::expected<SharedRecord, std::string> record_from_json(const nlohmann::ordered_json& json);
 
-/// SHA-256 of a file in hexadecimal. Error: why it can't be read.
-tl::expected<std::string, std::string> sha256_file(const std::filesystem::path& path);
-
 }  // namespace bodeflow::record

@@ -5,6 +5,7 @@
 #include "commands/command.hpp"
 #include "commands/run_graph.hpp"
 #include "commands/vector_level.hpp"
+#include "plugins/sha256.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -30,7 +31,7 @@ void warn_of_changes(const nlohmann::json& manifest, const Registry& registry) {
   const nlohmann::json inputs = manifest.value("inputs", nlohmann::json::array());
   for (const auto& input : inputs) {
     const std::string path = input.value("path", "");
-    const auto sum = record::sha256_file(path);
+    const auto sum = sha256_of_file(path);
     if (!sum || *sum != input.value("sha256", "")) say_warning(fmt::format("input file '{}' has changed since the run", path));
   }
 }

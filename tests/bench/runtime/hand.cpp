@@ -1,8 +1,9 @@
 #include "hand.hpp"
 
 #include <array>
-#include <chrono>
 #include <cstring>
+
+#include "measure.hpp"
 
 namespace bench {
 namespace {
@@ -10,11 +11,6 @@ namespace {
 constexpr std::size_t kChunk = 1024;
 
 void keep(const void* data) { asm volatile("" : : "g"(data) : "memory"); }
-
-double now_ns() {
-  return static_cast<double>(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
-}
 
 template <int Blocks>
 void multiply(std::size_t samples) {

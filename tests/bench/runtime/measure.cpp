@@ -23,6 +23,11 @@ Cost measure(std::size_t samples, const std::function<void()>& call) {
   return {(cpu_seconds() - cpu) * scale, std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count() * scale};
 }
 
+double now_ns() {
+  return static_cast<double>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
+}
+
 double quantile(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());
   const auto index = static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5);

@@ -15,6 +15,9 @@ struct Cost {
 /// CPU and wall time of a call, per sample.
 Cost measure(std::size_t samples, const std::function<void()>& call);
 
+/// Nanoseconds on the steady clock.
+double now_ns();
+
 double median(std::vector<double> values);
 double quantile(std::vector<double> values, double q);
 

@@ -10,17 +10,13 @@
 #include <gnuradio/top_block.h>
 
 #include <atomic>
-#include <chrono>
+
+#include "measure.hpp"
 
 namespace bench {
 namespace {
 
 constexpr int kLowLatencyItems = 256;
-
-double now_ns() {
-  return static_cast<double>(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
-}
 
 /// What source and sink share: one sample is on its way at a time.
 struct Flight {

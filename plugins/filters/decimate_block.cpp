@@ -1,5 +1,8 @@
 #include "decimate_block.hpp"
 
+#include <cmath>
+#include <numeric>
+
 namespace bodeflow::filters {
 
 void Decimate::describe(Describe& d) {
@@ -44,6 +47,10 @@ void Decimate::resolve(Facts& f) {
   StreamFacts& y = f.out(out);
   y.rate = y.rate.scaled(1, factor_);
   if (y.length >= 0) y.length /= factor_;
+  const auto noise = y.notes.find("noise.std");
+  if (noise == y.notes.end()) return;
+  const double power_gain = std::inner_product(taps_.begin(), taps_.end(), taps_.begin(), 0.0);
+  for (double& std : noise->second) std *= std::sqrt(power_gain);
 }
 
 void Decimate::activate(const Activation& a) {

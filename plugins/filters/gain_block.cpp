@@ -2,6 +2,8 @@
 
 #include <bodeflow/numerics/kernels.hpp>
 
+#include "notes.hpp"
+
 namespace bodeflow::filters {
 
 void Gain::describe(Describe& d) {
@@ -20,6 +22,7 @@ void Gain::configure(const Parameters& p) {
 }
 
 void Gain::resolve(Facts& f) {
+  f.out(out).notes = scaled(std::move(f.out(out).notes), gain_);
   if (!has_unit_ || !f.out(out).known) return;
   f.out(out).unit = unit_;
   f.out(out).channel_units.clear();

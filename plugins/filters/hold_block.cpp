@@ -26,6 +26,7 @@ void Hold::resolve(Facts& f) {
   StreamFacts& y = f.out(out);
   y.rate = y.rate.scaled(factor_, 1);
   if (y.length >= 0) y.length *= factor_;
+  y.notes.erase("noise.std");  // held noise is not white
 }
 
 void Hold::process(Io& io) {

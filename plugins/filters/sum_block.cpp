@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bodeflow/units.hpp>
 
+#include "notes.hpp"
+
 namespace bodeflow::filters {
 namespace {
 
@@ -44,13 +46,16 @@ void Sum::resolve(Facts& f) {
   for (const In<Any>& input : inputs) {
     const StreamFacts& x = f.in(input);
     if (!x.known) continue;
+    const Notes notes = scaled(x.notes, weights_[static_cast<std::size_t>(input.index)]);
     if (first == nullptr) {
       first = &input;
       f.out(out) = x;
+      f.out(out).notes = notes;
       continue;
     }
     StreamFacts& y = f.out(out);
     require_alike(f.in(*first), first->name, x, input.name);
+    y.notes = added(y.notes, notes);
     if (y.unit.empty()) y.unit = x.unit;
     if (x.length >= 0) y.length = y.length < 0 ? x.length : std::min(x.length, y.length);
   }

@@ -1,5 +1,7 @@
 #include "linear_block.hpp"
 
+#include <algorithm>
+
 #include "model_parameters.hpp"
 
 namespace bodeflow::plants {
@@ -48,6 +50,7 @@ void Linear::describe(Describe& d) {
 
 void Linear::configure(const Parameters& p) {
   model_ = read_model(p);
+  dynamics_ = dynamics_of(model_);
   delay_s_ = p.number("delay");
   unit_ = p.text("unit");
   output_names_ = p.texts("output_names");
@@ -84,6 +87,19 @@ void Linear::resolve(Facts& f) {
   y.unit = unit_;
   y.channel_names = output_names_;
   y.channel_units = output_units_;
+  state_notes(u, y);
+}
+
+/// A linear plant keeps the lines of its excitation, not their amplitudes.
+void Linear::state_notes(const StreamFacts& u, StreamFacts& y) const {
+  for (const char* name : {"excitation.period", "excitation.frequencies"}) {
+    if (u.notes.count(name) != 0) y.notes[name] = u.note(name);
+  }
+  std::vector<double>& modes = y.notes["plant.modes"] = u.note("plant.modes");
+  modes.insert(modes.end(), dynamics_.modes_hz.begin(), dynamics_.modes_hz.end());
+  std::sort(modes.begin(), modes.end());
+  const std::vector<double> before = u.note("plant.settling_time");
+  y.notes["plant.settling_time"] = {std::max(dynamics_.settling_s, before.empty() ? 0.0 : before[0])};
 }
 
 void Linear::activate(const Activation& a) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dynamics.hpp"
 #include "sampled_plant.hpp"
 #include "simulator.hpp"
 
@@ -23,7 +24,10 @@ class Linear final : public Block {
   void reset() override;
 
  private:
+  void state_notes(const StreamFacts& u, StreamFacts& y) const;
+
   numerics::StateSpace model_;
+  Dynamics dynamics_;
   double delay_s_ = 0.0;
   std::vector<double> initial_state_;
   std::string unit_;

@@ -23,6 +23,20 @@ void warn_of_late_changes(const graph::Phase& phase, plan::Facts& facts) {
   }
 }
 
+/// What the blocks have to say, in the order of the graph.
+tl::expected<std::vector<Advice>, Problems> advice_of(const graph::Phase& phase,
+                                                      const std::vector<std::unique_ptr<Instance>>& instances,
+                                                      const plan::Facts& facts) {
+  std::vector<Advice> advice;
+  for (std::size_t b = 0; b < instances.size(); ++b) {
+    auto said = instances[b]->advise(facts.blocks[b].inputs, facts.blocks[b].outputs);
+    if (!said)
+      return tl::unexpected(Problems{{phase.blocks[b].place, fmt::format("block '{}': {}", phase.blocks[b].name, said.error())}});
+    for (AdviceText& text : *said) advice.push_back({phase.blocks[b].name, std::move(text)});
+  }
+  return advice;
+}
+
 }  // namespace
 
 tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& registry,
@@ -47,7 +61,9 @@ tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& re
                                   phase.name.empty() ? "" : fmt::format("phase '{}': ", phase.name),
                                   static_cast<double>(plan->bytes) / 1e9, static_cast<double>(memory) / 1e9)}});
   warn_of_late_changes(phase, *facts);
-  return Prepared{std::move(*instances), std::move(*facts), std::move(*plan)};
+  auto advice = advice_of(phase, *instances, *facts);
+  if (!advice) return tl::unexpected(advice.error());
+  return Prepared{std::move(*instances), std::move(*facts), std::move(*plan), std::move(*advice)};
 }
 
 }  // namespace bodeflow::phases

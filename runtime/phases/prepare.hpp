@@ -8,11 +8,18 @@
 
 namespace bodeflow::phases {
 
+/// What a block says before its phase runs.
+struct Advice {
+  std::string block;
+  AdviceText said;
+};
+
 /// A phase that is ready to run.
 struct Prepared {
   std::vector<std::unique_ptr<Instance>> instances;  ///< configured and resolved
   plan::Facts facts;
   plan::Plan plan;
+  std::vector<Advice> advice;  ///< in the order of the graph
 };
 
 /// What the command line says over the graph's own `run` settings.

@@ -33,11 +33,13 @@ class Resolving {
     failed_.assign(count, false);
     resolves_.assign(count, 0);
     readers_.resize(count);
+    looped_.resize(count);
     for (const graph::StreamEdge& edge : phase.streams) readers_[edge.from.block].push_back(edge.to.block);
     for (const Component& component : components_) {
       for (const int block : component.nodes) {
         rank_[block] = static_cast<int>(by_rank_.size());
         by_rank_.push_back(block);
+        looped_[block] = component.loop;
       }
     }
   }
@@ -117,7 +119,14 @@ class Resolving {
     for (std::size_t port = 0; port < facts.outputs.size(); ++port) {
       if (facts.outputs[port].known) facts.outputs[port].length = samples_of(firings, facts.output_flows[port]);
     }
+    if (looped_[block]) forget_notes(before, facts.outputs);
     return facts.outputs != before;
+  }
+
+  /// In a loop notes that a block changes (a gain scales an amplitude) would change again with each pass: there they are no
+  /// reason to go on.
+  static void forget_notes(std::vector<StreamFacts>& before, const std::vector<StreamFacts>& now) {
+    for (std::size_t port = 0; port < std::min(before.size(), now.size()); ++port) before[port].notes = now[port].notes;
   }
 
   static std::int64_t samples_of(std::int64_t firings, const Flow& flow) {
@@ -220,7 +229,7 @@ class Resolving {
   std::vector<std::vector<int>> feeding_;
   std::vector<Component> components_;
   std::vector<int> rank_, by_rank_, resolves_;
-  std::vector<bool> failed_;
+  std::vector<bool> failed_, looped_;
   std::vector<std::vector<int>> readers_;
   Problems problems_;
 };

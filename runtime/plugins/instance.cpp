@@ -101,7 +101,7 @@ tl::expected<Resolution, std::string> Instance::resolve(const std::vector<Stream
   const auto output_count = static_cast<std::size_t>(type().count(BF_STREAM, BF_OUT));
   if (inputs.size() != input_count) return tl::unexpected(fmt::format("facts of {} inputs for {}", inputs.size(), input_count));
   const FactsView input_facts(inputs);
-  const bf_stream_facts unknown{sizeof(bf_stream_facts), 0, BF_F64, 0, {0, 1}, -1, "", "", nullptr, nullptr};
+  const bf_stream_facts unknown{sizeof(bf_stream_facts), 0, BF_F64, 0, {0, 1}, -1, "", "", nullptr, nullptr, nullptr, 0};
   std::vector<bf_stream_facts> outputs(output_count, unknown);
   const bf_flow preset{sizeof(bf_flow), 1, 0, nullptr};
   std::vector<bf_flow> input_flows(input_count, preset), output_flows(output_count, preset);
@@ -132,6 +132,31 @@ tl::expected<Resolution, std::string> Instance::resolve(const std::vector<Stream
     resolution.output_flows.push_back(std::move(*flow));
   }
   return resolution;
+}
+
+tl::expected<std::vector<AdviceText>, std::string> Instance::advise(const std::vector<StreamFacts>& inputs,
+                                                                    const std::vector<StreamFacts>& outputs) {
+  std::vector<AdviceText> said;
+  if (state_->block.extension == nullptr) return said;
+  const auto* advice = static_cast<const bf_advice*>(state_->block.extension(state_->block.self, BF_EXTENSION_ADVICE));
+  if (advice == nullptr || advice->struct_size < sizeof(bf_advice) || advice->advise == nullptr) return said;
+  const FactsView input_facts(inputs), output_facts(outputs);
+  std::vector<bf_stream_facts> written(output_facts.data(), output_facts.data() + outputs.size());
+  std::vector<bf_flow> flows(inputs.size() + outputs.size(), bf_flow{sizeof(bf_flow), 1, 0, nullptr});
+  bf_resolution c{};
+  c.struct_size = sizeof c;
+  c.input_count = static_cast<std::uint32_t>(inputs.size());
+  c.output_count = static_cast<std::uint32_t>(outputs.size());
+  c.inputs = input_facts.data();
+  c.outputs = written.data();
+  c.input_flows = flows.data();
+  c.output_flows = flows.data() + inputs.size();
+  const auto tell = [](void* context, std::int32_t level, const char* text) {
+    static_cast<std::vector<AdviceText>*>(context)->push_back({level, text == nullptr ? "" : text});
+  };
+  if (auto done = state_->call("advise", [&] { return advice->advise(state_->block.self, &c, &said, tell); }); !done)
+    return tl::unexpected(done.error());
+  return said;
 }
 
 Instance::Result Instance::activate(const bf_activation& activation) {

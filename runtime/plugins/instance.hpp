@@ -2,6 +2,7 @@
 
 #include <bodeflow/rate.hpp>
 #include <functional>
+#include <map>
 #include <optional>
 
 #include "plugins/registry.hpp"
@@ -27,6 +28,7 @@ struct StreamFacts {
   std::string clock;
   std::vector<std::string> channel_names;
   std::vector<std::string> channel_units;
+  std::map<std::string, std::vector<double>> notes;
 
   bool operator==(const StreamFacts&) const = default;
 };
@@ -46,6 +48,12 @@ struct Resolution {
   std::vector<Flow> output_flows;
 };
 
+/// What a block says before a run.
+struct AdviceText {
+  int level = BF_LOG_INFO;  ///< or BF_LOG_WARNING
+  std::string text;
+};
+
 /// One block of a graph: a bf_block with its host services. Every call gives the block's own words on failure.
 class Instance {
  public:
@@ -61,6 +69,9 @@ class Instance {
   using Result = tl::expected<void, std::string>;
   Result configure(const std::vector<ParameterValue>& values);
   tl::expected<Resolution, std::string> resolve(const std::vector<StreamFacts>& inputs);
+  /// What the block says to final facts; nothing from a block that gives no advice.
+  tl::expected<std::vector<AdviceText>, std::string> advise(const std::vector<StreamFacts>& inputs,
+                                                            const std::vector<StreamFacts>& outputs);
   Result activate(const bf_activation& activation);
   Result change(std::uint32_t parameter, const ParameterValue& value);
   Result reset();

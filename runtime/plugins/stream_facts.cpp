@@ -8,6 +8,7 @@ namespace {
 constexpr std::uint32_t kMostChannels = 65536;
 constexpr std::uint32_t kMostSamples = 1U << 26U;  // of a firing
 constexpr std::uint64_t kLongestDelay = std::uint64_t{1} << 40U;
+constexpr std::uint64_t kMostNotes = 256, kLongestNote = 1U << 20U;
 constexpr std::uint64_t kMostInitial = std::uint64_t{1} << 28U;  // values
 
 std::string text(const char* c) { return c == nullptr ? std::string() : std::string(c); }
@@ -28,6 +29,7 @@ FactsView::FactsView(const std::vector<StreamFacts>& facts) {
     return made.data();
   };
   names_.reserve(2 * facts.size());
+  notes_.reserve(facts.size());
   for (const StreamFacts& f : facts) {
     bf_stream_facts c{};
     c.struct_size = sizeof c;
@@ -41,6 +43,10 @@ FactsView::FactsView(const std::vector<StreamFacts>& facts) {
     // a list shorter than the channels would be read beyond its end
     c.channel_names = f.channel_names.size() == f.channels ? pointers(f.channel_names) : nullptr;
     c.channel_units = f.channel_units.size() == f.channels ? pointers(f.channel_units) : nullptr;
+    std::vector<bf_note>& notes = notes_.emplace_back();
+    for (const auto& [name, values] : f.notes) notes.push_back({name.c_str(), values.data(), values.size()});
+    c.notes = notes.data();
+    c.note_count = notes.size();
     c_.push_back(c);
   }
 }
@@ -64,6 +70,13 @@ tl::expected<StreamFacts, std::string> owned(const bf_stream_facts& c, const std
   facts.clock = text(c.clock);
   facts.channel_names = texts(c.channel_names, c.channels);
   facts.channel_units = texts(c.channel_units, c.channels);
+  if (c.note_count > kMostNotes) return bad(fmt::format("{} notes; allowed: up to {}", c.note_count, kMostNotes));
+  for (std::uint64_t i = 0; c.notes != nullptr && i < c.note_count; ++i) {
+    const bf_note& note = c.notes[i];
+    if (note.count > kLongestNote)
+      return bad(fmt::format("note '{}' with {} values; allowed: up to {}", text(note.name), note.count, kLongestNote));
+    facts.notes[text(note.name)].assign(note.values, note.values + note.count);
+  }
   return facts;
 }
 

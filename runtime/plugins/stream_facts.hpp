@@ -16,6 +16,7 @@ class FactsView {
  private:
   std::vector<bf_stream_facts> c_;
   std::vector<std::vector<const char*>> names_;
+  std::vector<std::vector<bf_note>> notes_;
 };
 
 /// An owned copy of what a block filled in for stream output `port`. Error: what is impossible about it.

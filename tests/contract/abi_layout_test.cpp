@@ -12,7 +12,7 @@
   static_assert(sizeof(type) == (size) && std::is_standard_layout_v<type> && std::is_trivially_copyable_v<type>)
 #define AT(type, member, offset) static_assert(offsetof(type, member) == (offset))
 
-static_assert(BF_ABI_MAJOR == 0 && BF_ABI_MINOR == 1);
+static_assert(BF_ABI_MAJOR == 0 && BF_ABI_MINOR == 2);
 static_assert(BF_OK == 0 && BF_FAILED == 1);
 static_assert(BF_ANY == 0 && BF_F64 == 1 && BF_C64 == 2 && BF_I64 == 3 && BF_U8 == 4);
 static_assert(BF_BOOL == 1 && BF_INTEGER == 2 && BF_NUMBER == 3 && BF_STRING == 4 && BF_CHOICE == 5 && BF_FILE == 6);
@@ -76,7 +76,12 @@ AT(bf_block_descriptor, cost_ns, 56);
 AT(bf_block_descriptor, ports, 64);
 AT(bf_block_descriptor, parameters, 72);
 
-SIZE(bf_stream_facts, 72);
+SIZE(bf_note, 24);
+AT(bf_note, name, 0);
+AT(bf_note, values, 8);
+AT(bf_note, count, 16);
+
+SIZE(bf_stream_facts, 88);
 AT(bf_stream_facts, struct_size, 0);
 AT(bf_stream_facts, known, 4);
 AT(bf_stream_facts, element, 8);
@@ -87,6 +92,8 @@ AT(bf_stream_facts, unit, 40);
 AT(bf_stream_facts, clock, 48);
 AT(bf_stream_facts, channel_names, 56);
 AT(bf_stream_facts, channel_units, 64);
+AT(bf_stream_facts, notes, 72);
+AT(bf_stream_facts, note_count, 80);
 
 SIZE(bf_flow, 24);
 AT(bf_flow, struct_size, 0);
@@ -123,6 +130,9 @@ AT(bf_log, write, 8);
 SIZE(bf_files, 24);
 AT(bf_files, note_input, 8);
 AT(bf_files, output_path, 16);
+
+SIZE(bf_advice, 16);
+AT(bf_advice, advise, 8);
 
 SIZE(bf_activation, 48);
 AT(bf_activation, struct_size, 0);
@@ -203,20 +213,22 @@ TEST_CASE("the magic number of a plugin spells BODEFLOW in the file") {
 extern "C" int bodeflow_sizes_in_c(std::size_t* sizes);
 
 TEST_CASE("a C compiler sees the structs of the border in the same sizes") {
-  std::size_t sizes[18] = {};
-  REQUIRE(bodeflow_sizes_in_c(sizes) == 18);
-  const std::size_t expected[18] = {sizeof(bf_rate),
+  std::size_t sizes[20] = {};
+  REQUIRE(bodeflow_sizes_in_c(sizes) == 20);
+  const std::size_t expected[20] = {sizeof(bf_rate),
                                     sizeof(bf_parameter_value),
                                     sizeof(bf_port_descriptor),
                                     sizeof(bf_parameter_descriptor),
                                     sizeof(bf_block_descriptor),
                                     sizeof(bf_flow),
+                                    sizeof(bf_note),
                                     sizeof(bf_stream_facts),
                                     sizeof(bf_resolution),
                                     sizeof(bf_record),
                                     sizeof(bf_host),
                                     sizeof(bf_log),
                                     sizeof(bf_files),
+                                    sizeof(bf_advice),
                                     sizeof(bf_activation),
                                     sizeof(bf_process),
                                     sizeof(bf_block),

@@ -86,6 +86,29 @@ class BlockDriver {
     return outputs_;
   }
 
+  /// What the block advises to these facts; warnings begin with "warning: ".
+  std::vector<std::string> advise(const std::vector<StreamFacts>& inputs) {
+    const std::vector<StreamFacts> outputs = resolve(inputs);
+    std::list<std::vector<const char*>> texts;
+    std::vector<bf_stream_facts> in, out;
+    for (const StreamFacts& f : inputs) in.push_back(borrowed(f, texts));
+    for (const StreamFacts& f : outputs) out.push_back(borrowed(f, texts));
+    std::vector<bf_flow> flows(in.size() + out.size(), bf_flow{sizeof(bf_flow), 1, 0, nullptr});
+    const bf_resolution r{sizeof r,
+                          static_cast<std::uint32_t>(in.size()),
+                          static_cast<std::uint32_t>(out.size()),
+                          in.data(),
+                          out.data(),
+                          flows.data(),
+                          flows.data() + in.size()};
+    const auto* advice = static_cast<const bf_advice*>(block_.extension(block_.self, BF_EXTENSION_ADVICE));
+    std::vector<std::string> said;
+    check(advice->advise(block_.self, &r, &said, [](void* to, std::int32_t level, const char* text) {
+      static_cast<std::vector<std::string>*>(to)->push_back((level == BF_LOG_WARNING ? "warning: " : "") + std::string(text));
+    }));
+    return said;
+  }
+
   void activate(std::uint64_t max_count, Rate rate) {
     const bf_activation a{sizeof(bf_activation), 0, max_count, 1, rate.c(), 1, 0};
     check(block_.activate(block_.self, &a));
@@ -161,7 +184,7 @@ class BlockDriver {
     return static_cast<std::size_t>(block_type<B>().count(BF_STREAM, direction));
   }
 
-  static bf_stream_facts borrowed(const StreamFacts& f, std::list<std::vector<const char*>>& texts) {
+  bf_stream_facts borrowed(const StreamFacts& f, std::list<std::vector<const char*>>& texts) {
     const auto words = [&texts](const std::vector<std::string>& list) -> const char* const* {
       if (list.empty()) return nullptr;
       std::vector<const char*> places;
@@ -180,6 +203,10 @@ class BlockDriver {
     c.clock = f.clock.c_str();
     c.channel_names = words(f.channel_names);
     c.channel_units = words(f.channel_units);
+    auto& notes = notes_.emplace_back();
+    for (const auto& [name, values] : f.notes) notes.push_back({name.c_str(), values.data(), values.size()});
+    c.notes = notes.data();
+    c.note_count = notes.size();
     return c;
   }
   static StreamFacts owned(const bf_stream_facts& c) {
@@ -190,6 +217,8 @@ class BlockDriver {
     f.rate = Rate(c.rate);
     f.length = c.length;
     if (c.unit != nullptr) f.unit = c.unit;
+    for (std::uint64_t i = 0; i < c.note_count; ++i)
+      f.notes[c.notes[i].name].assign(c.notes[i].values, c.notes[i].values + c.notes[i].count);
     if (c.channel_names != nullptr) f.channel_names.assign(c.channel_names, c.channel_names + c.channels);
     if (c.channel_units != nullptr) f.channel_units.assign(c.channel_units, c.channel_units + c.channels);
     return f;
@@ -249,6 +278,7 @@ class BlockDriver {
   std::vector<std::uint64_t> record_positions_;
   std::filesystem::path folder_;
   std::list<std::string> paths_;
+  std::list<std::vector<bf_note>> notes_;
   std::uint64_t position_ = 0, done_ = 0;
 };
 

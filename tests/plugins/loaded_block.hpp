@@ -89,8 +89,9 @@ class LoadedBlock {
     output_flows_.assign(out.size(), {sizeof(bf_flow), 1, 0, nullptr});
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
       const StreamFacts& f = inputs_[i].facts;
-      in[i] = {sizeof in[i], f.known, f.element, static_cast<std::uint32_t>(f.channels), f.rate.c(), f.length, f.unit.c_str(),
-               "",           nullptr, nullptr};
+      in[i] = {sizeof in[i], f.known,  f.element,      static_cast<std::uint32_t>(f.channels),
+               f.rate.c(),   f.length, f.unit.c_str(), "",
+               nullptr,      nullptr,  nullptr,        0};
     }
     for (std::size_t i = inputs_.size(); i < in.size(); ++i) in[i].unit = in[i].clock = "";
     bf_resolution r{sizeof r,

@@ -311,8 +311,8 @@ TEST_CASE("facts follow same_as, keep the port's type, and outlive the call") {
   bf_flow in_flow[2]{{sizeof(bf_flow), 1, 0, nullptr}, {sizeof(bf_flow), 1, 0, nullptr}},
       out_flow[1]{{sizeof(bf_flow), 1, 0, nullptr}};
   const char* names[2] = {"left", "right"};
-  in[0] = {sizeof(bf_stream_facts), 1, BF_F64, 2, {1000, 1}, -1, "V", "", names, nullptr};
-  in[1] = {sizeof(bf_stream_facts), 0, 0, 0, {0, 0}, -1, nullptr, nullptr, nullptr, nullptr};
+  in[0] = {sizeof(bf_stream_facts), 1, BF_F64, 2, {1000, 1}, -1, "V", "", names, nullptr, nullptr, 0};
+  in[1] = {sizeof(bf_stream_facts), 0, 0, 0, {0, 0}, -1, nullptr, nullptr, nullptr, nullptr, nullptr, 0};
   bf_resolution r{sizeof(bf_resolution), 2, 1, in, out, in_flow, out_flow};
   behaviour = [](const std::string&, Io*) {
     Facts& f = *Probe::current->facts;

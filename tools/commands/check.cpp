@@ -9,6 +9,13 @@
 namespace bodeflow::tools {
 namespace {
 
+nlohmann::ordered_json advice_json(const std::vector<phases::Advice>& advice) {
+  nlohmann::ordered_json list = nlohmann::json::array();
+  for (const auto& [block, said] : advice)
+    list.push_back({{"block", block}, {"level", said.level >= BF_LOG_WARNING ? "warning" : "info"}, {"text", said.text}});
+  return list;
+}
+
 int check(const Session& session, const GraphOptions& options) {
   Registry registry = session.open_registry();
   const auto graph = options.load(registry);
@@ -25,11 +32,13 @@ int check(const Session& session, const GraphOptions& options) {
     phases.push_back({{"name", phase.name},
                       {"blocks", phase.blocks.size()},
                       {"connections", phase.streams.size() + phase.messages.size()},
-                      {"warnings", (*prepared)[i].facts.warnings}});
-    if (!options.json)
-      fmt::print("{}{}: {} blocks, {} connections, right\n", options.file,
-                 phase.name.empty() ? "" : ", phase '" + phase.name + "'", phase.blocks.size(),
-                 phase.streams.size() + phase.messages.size());
+                      {"warnings", (*prepared)[i].facts.warnings},
+                      {"advice", advice_json((*prepared)[i].advice)}});
+    if (options.json) continue;
+    fmt::print("{}{}: {} blocks, {} connections, right\n", options.file, phase.name.empty() ? "" : ", phase '" + phase.name + "'",
+               phase.blocks.size(), phase.streams.size() + phase.messages.size());
+    for (const auto& [block, said] : (*prepared)[i].advice)
+      if (said.level < BF_LOG_WARNING) fmt::print("  {}: {}\n", block, said.text);
   }
   if (options.json) fmt::print("{}\n", nlohmann::ordered_json{{"graph", options.file}, {"phases", phases}}.dump(2));
   return kDone;

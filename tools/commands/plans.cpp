@@ -11,13 +11,16 @@ namespace bodeflow::tools {
 void say_warnings(const std::vector<phases::Prepared>& prepared) {
   for (const auto& phase : prepared)
     for (const auto& warning : phase.facts.warnings) say_warning(warning);
+  for (const auto& phase : prepared)
+    for (const auto& [block, said] : phase.advice)
+      if (said.level >= BF_LOG_WARNING) say_warning(block + ": " + said.text);
 }
 
 void print_plans(const graph::Graph& graph, const std::vector<phases::Prepared>& prepared, bool as_json) {
   nlohmann::ordered_json all = nlohmann::json::array();
   for (std::size_t i = 0; i < graph.phases.size(); ++i) {
     const auto& phase = graph.phases[i];
-    const auto& [instances, facts, plan] = prepared[i];
+    const auto& [instances, facts, plan, advice] = prepared[i];
     if (as_json) {
       all.push_back({{"phase", phase.name}, {"plan", plan::to_json(phase, facts, plan)}});
       continue;

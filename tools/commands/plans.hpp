@@ -4,7 +4,7 @@
 
 namespace bodeflow::tools {
 
-/// Says the warnings of all phases on standard error.
+/// Says the warnings of all phases, and those that their blocks give, on standard error.
 void say_warnings(const std::vector<phases::Prepared>& prepared);
 
 /// Prints the plan of every phase on standard output.

@@ -20,7 +20,7 @@ extern "C" {
 #endif
 
 #define BF_ABI_MAJOR 0
-#define BF_ABI_MINOR 1
+#define BF_ABI_MINOR 2
 /* "BODEFLOW" read as a little-endian integer. */
 #define BF_PLUGIN_MAGIC UINT64_C(0x574F4C4645444F42)
 /* The one exported data symbol of a plugin, of type bf_plugin. */
@@ -132,6 +132,13 @@ typedef struct bf_block_descriptor {
 
 /* ---- facts (after configure, before activate) ------------------------------------------------------------------ */
 
+/* Something that is known of a stream beside its facts, for advice before a run: "excitation.period" and the like. */
+typedef struct bf_note {
+  const char* name;
+  const double* values;
+  uint64_t count;
+} bf_note;
+
 /* What is true of a stream. `known` = 0: nothing yet (inside a loop the facts arrive in several passes). */
 typedef struct bf_stream_facts {
   uint32_t struct_size;
@@ -144,6 +151,8 @@ typedef struct bf_stream_facts {
   const char* clock;                /* clock domain; "" is the engine's own */
   const char* const* channel_names; /* NULL or `channels` names */
   const char* const* channel_units; /* NULL or `channels` units */
+  const bf_note* notes;
+  uint64_t note_count;
 } bf_stream_facts;
 
 /* How a stream port moves data. A block fires a whole number of times; a firing takes `samples` of each input and gives
@@ -280,6 +289,16 @@ typedef struct bf_block {
   /* [control] An optional ability by its id, or NULL. */
   const void* (*extension)(void* self, const char* id);
 } bf_block;
+
+/* An extension of a block: what a graph's author should know before it runs. */
+#define BF_EXTENSION_ADVICE "bodeflow.advice/1"
+typedef struct bf_advice {
+  uint32_t struct_size;
+  /* [control] After the last resolve, whose facts `resolution` has (final, of inputs and outputs): calls `tell` with
+   * BF_LOG_INFO or BF_LOG_WARNING once for each thing to say; the text is copied. */
+  int32_t (*advise)(void* self, const bf_resolution* resolution, void* context,
+                    void (*tell)(void* context, int32_t level, const char* text));
+} bf_advice;
 
 /* ---- plugin ----------------------------------------------------------------------------------------------------- */
 

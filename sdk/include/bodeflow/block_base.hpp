@@ -20,6 +20,22 @@ struct Activation {
   int vector_level = 1;         ///< widest vector unit that kernels may use: 1 SSE2, 3 AVX2, 4 AVX-512
 };
 
+/// Takes what a block has to say before a run, see Block::advise.
+class Advice {
+ public:
+  using Tell = void (*)(void* context, std::int32_t level, const char* text);
+  Advice(Tell sink, void* context) : tell_(sink), context_(context) {}
+
+  /// Something worth knowing: `bodeflow check` prints it.
+  void tell(const std::string& text) { tell_(context_, BF_LOG_INFO, text.c_str()); }
+  /// Something that will spoil the result, and what to do about it: printed before a run as well.
+  void warn(const std::string& text) { tell_(context_, BF_LOG_WARNING, text.c_str()); }
+
+ private:
+  Tell tell_;
+  void* context_;
+};
+
 /// One unit of work. A class that derives from it has `static void describe(Describe&)` and a default constructor; all else
 /// is overridden where needed. Each function may throw, `fail("reason")` above all: the run ends with the block's name and
 /// that text.
@@ -34,6 +50,9 @@ class Block {
   virtual void configure(const Parameters&) {}
   /// States the facts of the outputs from those of the inputs. Pure: called any number of times, the same answer each time.
   virtual void resolve(Facts&) {}
+  /// Says what the author of a graph should know before it runs. The facts of all streams are final; lengths are what will
+  /// really arrive. Called any number of times, changes nothing.
+  virtual void advise(const Facts&, Advice&) {}
   /// Allocates and opens all that `process` needs.
   virtual void activate(const Activation&) {}
   /// Moves samples.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -166,7 +167,18 @@ struct Border {
     guarded(host, [&] { delete b; });
   }
 
-  static const void* extension(void*, const char*) noexcept { return nullptr; }
+  static std::int32_t advise(void* self, const bf_resolution* resolution, void* context, Advice::Tell tell) noexcept {
+    Border& b = of(self);
+    return guarded(b.host_, [&] {
+      Advice advice(tell, context);
+      b.base().advise(Facts(*b.type_, *resolution), advice);
+    });
+  }
+
+  static const void* extension(void*, const char* id) noexcept {
+    static constexpr bf_advice advice{sizeof(bf_advice), advise};
+    return std::string_view(id) == BF_EXTENSION_ADVICE ? &advice : nullptr;
+  }
 
   B block_;
   const bf_host* host_;

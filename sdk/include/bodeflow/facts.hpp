@@ -4,6 +4,7 @@
 #include <bodeflow/ports.hpp>
 #include <bodeflow/rate.hpp>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,19 @@ struct StreamFacts {
   std::string clock;         ///< clock domain, "" the engine's own
   std::vector<std::string> channel_names;
   std::vector<std::string> channel_units;
+  /// What else is known of the signal, for advice before a run: name -> values. README.md lists the names.
+  std::map<std::string, std::vector<double>> notes;
+
+  /// A note's values; empty where there is none.
+  std::vector<double> note(const std::string& name) const {
+    const auto found = notes.find(name);
+    return found == notes.end() ? std::vector<double>() : found->second;
+  }
 };
 
-/// What `resolve` reads of the stream inputs and writes of the stream outputs. On entry each output that is `same_as` an input
-/// has that input's facts; the others are unknown. An output port of a fixed type keeps that type whatever `element` says.
+/// What `resolve` reads of the stream inputs and writes of the stream outputs, and `advise` reads of both. On entry of `resolve`
+/// each output that is `same_as` an input has that input's facts; the others are unknown. An output port of a fixed type keeps
+/// that type whatever `element` says.
 class Facts {
  public:
   Facts(const BlockType& type, const bf_resolution& r) : type_(&type) {
@@ -34,7 +44,11 @@ class Facts {
     for (std::uint32_t o = 0; o < r.output_count; ++o) {
       const PortDraft& port = type.port(BF_STREAM, BF_OUT, static_cast<int>(o));
       StreamFacts facts;
-      if (port.same_as >= 0) facts = inputs_.at(static_cast<std::size_t>(port.same_as));
+      if (r.outputs[o].known != 0) {
+        facts = owned(r.outputs[o]);
+      } else if (port.same_as >= 0) {
+        facts = inputs_.at(static_cast<std::size_t>(port.same_as));
+      }
       outputs_.push_back(std::move(facts));
     }
   }
@@ -45,6 +59,10 @@ class Facts {
   }
   template <class T>
   StreamFacts& out(Out<T> port) {
+    return outputs_.at(static_cast<std::size_t>(port.index));
+  }
+  template <class T>
+  const StreamFacts& out(Out<T> port) const {
     return outputs_.at(static_cast<std::size_t>(port.index));
   }
 
@@ -73,6 +91,8 @@ class Facts {
     for (std::uint32_t i = 0; i < r.input_count; ++i) check_initial(i);
     names_.clear();
     names_.reserve(2 * outputs_.size());
+    notes_.clear();
+    notes_.reserve(outputs_.size());
     for (std::uint32_t o = 0; o < r.output_count; ++o) write_output(r.outputs[o], o);
     for (std::uint32_t i = 0; i < r.input_count; ++i) write_flow(r.input_flows[i], input_flows_[i]);
     for (std::uint32_t o = 0; o < r.output_count; ++o) write_flow(r.output_flows[o], output_flows_[o]);
@@ -102,6 +122,8 @@ class Facts {
     if (f.clock != nullptr) facts.clock = f.clock;
     if (f.channel_names != nullptr) facts.channel_names.assign(f.channel_names, f.channel_names + f.channels);
     if (f.channel_units != nullptr) facts.channel_units.assign(f.channel_units, f.channel_units + f.channels);
+    for (std::uint64_t i = 0; i < f.note_count; ++i)
+      facts.notes[f.notes[i].name].assign(f.notes[i].values, f.notes[i].values + f.notes[i].count);
     return facts;
   }
 
@@ -124,6 +146,12 @@ class Facts {
     return names_.back().data();
   }
 
+  const bf_note* notes(const StreamFacts& f) {
+    auto& list = notes_.emplace_back();
+    for (const auto& [name, values] : f.notes) list.push_back({name.c_str(), values.data(), values.size()});
+    return list.empty() ? nullptr : list.data();
+  }
+
   void write_output(bf_stream_facts& to, std::size_t o) {
     const PortDraft& port = type_->port(BF_STREAM, BF_OUT, static_cast<int>(o));
     const StreamFacts& f = outputs_[o];
@@ -142,6 +170,8 @@ class Facts {
     to.clock = f.clock.c_str();
     to.channel_names = f.known ? names(f.channel_names) : nullptr;
     to.channel_units = f.known ? names(f.channel_units) : nullptr;
+    to.notes = f.known ? notes(f) : nullptr;
+    to.note_count = f.known ? f.notes.size() : 0;
   }
 
   static void write_flow(bf_flow& to, const Flow& flow) {
@@ -154,6 +184,7 @@ class Facts {
   std::vector<StreamFacts> inputs_, outputs_;
   std::vector<Flow> input_flows_, output_flows_;
   std::vector<std::vector<const char*>> names_;
+  std::vector<std::vector<bf_note>> notes_;
 };
 
 }  // namespace v0

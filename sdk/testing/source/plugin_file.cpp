@@ -70,7 +70,7 @@ LoadedPlugin load_plugin(const std::string& file) {
   const auto* plugin = static_cast<const bf_plugin*>(dlsym(library, BF_PLUGIN_SYMBOL));
   if (plugin == nullptr) fail("exports no " BF_PLUGIN_SYMBOL);
   if (plugin->magic != BF_PLUGIN_MAGIC) fail("the magic of " BF_PLUGIN_SYMBOL " is wrong");
-  if (plugin->abi_major != BF_ABI_MAJOR || plugin->abi_minor > BF_ABI_MINOR) {
+  if (plugin->abi_major != BF_ABI_MAJOR || plugin->abi_minor != BF_ABI_MINOR) {
     fail("is built for ABI " + std::to_string(plugin->abi_major) + "." + std::to_string(plugin->abi_minor) +
          "; this suite tests " + std::to_string(BF_ABI_MAJOR) + "." + std::to_string(BF_ABI_MINOR));
   }

@@ -101,11 +101,24 @@ Resolved Rig::resolve(bool known) {
                   in_flows.data(),
                   out_flows.data()};
   require(block_.resolve(block_.self, &r), "resolve");
+  if (known) advise(r);
   Resolved facts;
   for (const auto& f : out) facts.outputs.push_back(copied(f));
   for (std::size_t i = 0; i < in.size(); ++i) facts.input_flows.push_back(copied(in_flows[i], in[i].channels, in[i].element));
   for (const auto& f : out_flows) facts.output_flows.push_back(copied(f, 0, BF_F64));
   return facts;
+}
+
+/// A block that gives advice gives it for facts that are known, and fails at none.
+void Rig::advise(const bf_resolution& resolved) const {
+  if (block_.extension == nullptr) return;
+  const auto* advice = static_cast<const bf_advice*>(block_.extension(block_.self, BF_EXTENSION_ADVICE));
+  if (advice == nullptr) return;
+  const auto tell = [](void*, std::int32_t level, const char* text) {
+    if (level != BF_LOG_INFO && level != BF_LOG_WARNING) fail("advise tells with level " + std::to_string(level));
+    if (text == nullptr || *text == '\0') fail("advise tells nothing");
+  };
+  require(advice->advise(block_.self, &resolved, nullptr, tell), "advise");
 }
 
 void Rig::activate(std::uint64_t max_count) {

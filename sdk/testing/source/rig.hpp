@@ -123,6 +123,7 @@ class Rig {
   friend class Run;
   void require(std::int32_t result, const char* function) const;
   std::vector<bf_stream_facts> input_facts(bool known) const;
+  void advise(const bf_resolution& resolved) const;
   /// Of the feed, fewer where a firing has very many samples.
   std::uint64_t firings() const;
 

@@ -9,37 +9,15 @@
 
 #include "engine.hpp"
 #include "hand.hpp"
+#include "interleave.hpp"
 #include "measure.hpp"
 #include "radio.hpp"
 
 namespace {
 
-using bench::Cost;
-
-struct Candidate {
-  std::string name;
-  std::function<void()> run;
-  std::vector<double> cpu_ns, wall_ns;
-};
-
-/// Runs the candidates in turn, `repeats` times, after one run of each that does not count.
-void interleave(std::vector<Candidate>& candidates, std::size_t samples, int repeats) {
-  for (auto& candidate : candidates) candidate.run();
-  for (int repeat = 0; repeat < repeats; ++repeat)
-    for (auto& candidate : candidates) {
-      const Cost cost = bench::measure(samples, candidate.run);
-      candidate.cpu_ns.push_back(cost.cpu_ns);
-      candidate.wall_ns.push_back(cost.wall_ns);
-    }
-}
-
-void print(const std::string& title, const std::vector<Candidate>& candidates) {
-  fmt::print("\n{}\n\n| | CPU ns/sample | wall ns/sample | CPU against the first |\n|---|---|---|---|\n", title);
-  const double first = bench::median(candidates.front().cpu_ns);
-  for (const auto& candidate : candidates)
-    fmt::print("| {} | {:.3f} | {:.3f} | {:.2f} |\n", candidate.name, bench::median(candidate.cpu_ns),
-               bench::median(candidate.wall_ns), bench::median(candidate.cpu_ns) / first);
-}
+using bench::Candidate;
+using bench::interleave;
+using bench::print;
 
 Candidate engine(const std::string& name, const std::string& graph, const bench::EngineOptions& options) {
   auto made = std::make_shared<bench::Engine>(graph, options);

@@ -40,7 +40,9 @@ Eigen::Map<Eigen::VectorXcd> map(std::vector<std::complex<double>>& v) { return 
 }  // namespace
 
 struct RealDft::Plan : KissPlan {
-  using KissPlan::KissPlan;
+  explicit Plan(Eigen::Index n) : KissPlan(n), samples(n) {}
+
+  Eigen::VectorXd samples;
 };
 
 struct ComplexDft::Plan : KissPlan {
@@ -58,6 +60,14 @@ void RealDft::forward(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eig
   map(plan_->x) = x.cast<std::complex<double>>();
   plan_->run_forward();
   spectrum = map(plan_->spectrum).head(lines());
+}
+
+Eigen::Map<Eigen::VectorXd> RealDft::samples() { return {plan_->samples.data(), length()}; }
+
+Eigen::Map<Eigen::VectorXcd> RealDft::transform() {
+  map(plan_->x) = plan_->samples.cast<std::complex<double>>();
+  plan_->run_forward();
+  return {plan_->spectrum.data(), lines()};
 }
 
 ComplexDft::ComplexDft(Eigen::Index length) : plan_(std::make_unique<Plan>(length)) {}

@@ -87,6 +87,13 @@ void RealDft::forward(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eig
   spectrum = plan_->spectrum.complex(lines());
 }
 
+Eigen::Map<Eigen::VectorXd> RealDft::samples() { return plan_->x.real(plan_->length); }
+
+Eigen::Map<Eigen::VectorXcd> RealDft::transform() {
+  fftw_execute(plan_->forward);
+  return plan_->spectrum.complex(lines());
+}
+
 ComplexDft::ComplexDft(Eigen::Index length) : plan_(std::make_unique<Plan>(length)) {}
 ComplexDft::~ComplexDft() = default;
 ComplexDft::ComplexDft(ComplexDft&&) noexcept = default;

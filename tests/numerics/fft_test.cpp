@@ -103,6 +103,21 @@ TEST_CASE("a plan used again gives the same bits, wherever the samples stand in 
   CHECK(data == expected);
 }
 
+TEST_CASE("a transform in place of its samples gives the bits of one that copies") {
+  for (const Eigen::Index n : {1, 2, 37, 64, 1000}) {
+    RealDft dft(n), other(n);
+    const Eigen::VectorXd x = sequence(n, 0.3);
+    Eigen::VectorXcd copied(dft.lines());
+    other.forward(x, copied);
+    for (int again = 0; again < 2; ++again) {
+      dft.samples() = x;
+      const auto spectrum = dft.transform();
+      REQUIRE(spectrum.size() == dft.lines());
+      CHECK(spectrum == copied);
+    }
+  }
+}
+
 TEST_CASE("an empty sequence has an empty spectrum") {
   CHECK(bodeflow::numerics::dft(Eigen::VectorXd()).size() == 0);
   CHECK(bodeflow::numerics::dft(Eigen::VectorXcd()).size() == 0);

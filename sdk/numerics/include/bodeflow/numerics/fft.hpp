@@ -27,6 +27,12 @@ class RealDft {
   /// x: `length()` samples; spectrum: `lines()` values, overwritten.
   void forward(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXcd> spectrum);
 
+  /// The place of the samples that `transform` takes, `length()` values to be written: spares the copies of `forward`.
+  Eigen::Map<Eigen::VectorXd> samples();
+  /// The half spectrum, as in `forward`, of what was written to `samples`: `lines()` values that the caller may change, valid
+  /// until the next transform. The samples have to be written anew before it.
+  Eigen::Map<Eigen::VectorXcd> transform();
+
  private:
   struct Plan;
   std::unique_ptr<Plan> plan_;

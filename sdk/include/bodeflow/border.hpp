@@ -171,7 +171,7 @@ struct Border {
     Border& b = of(self);
     return guarded(b.host_, [&] {
       Advice advice(tell, context);
-      b.base().advise(Facts(*b.type_, *resolution), advice);
+      b.base().advise(Facts(*b.type_, *resolution, true), advice);
     });
   }
 

@@ -37,14 +37,15 @@ struct StreamFacts {
 /// that type whatever `element` says.
 class Facts {
  public:
-  Facts(const BlockType& type, const bf_resolution& r) : type_(&type) {
+  /// `settled`: the outputs have their facts already, as `advise` sees them.
+  Facts(const BlockType& type, const bf_resolution& r, bool settled = false) : type_(&type) {
     for (std::uint32_t i = 0; i < r.input_count; ++i) inputs_.push_back(owned(r.inputs[i]));
     input_flows_.resize(r.input_count);
     output_flows_.resize(r.output_count);
     for (std::uint32_t o = 0; o < r.output_count; ++o) {
       const PortDraft& port = type.port(BF_STREAM, BF_OUT, static_cast<int>(o));
       StreamFacts facts;
-      if (r.outputs[o].known != 0) {
+      if (settled) {
         facts = owned(r.outputs[o]);
       } else if (port.same_as >= 0) {
         facts = inputs_.at(static_cast<std::size_t>(port.same_as));

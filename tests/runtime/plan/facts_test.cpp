@@ -214,6 +214,28 @@ TEST_CASE("facts: a loop whose facts change in each pass is an error, not an end
       "g.yaml:3:3: the facts of the loop of 'sum', 'plant' do not settle: each pass changes them again (plant.out was at 1 kHz)");
 }
 
+TEST_CASE("facts: notes that a loop changes in each pass are no reason to go on, and those behind the loop are its last") {
+  Net net;
+  net.source("reference", Rate::from_hz(1e3), 1000);
+  net.sum("sum");
+  const auto louder = [](const std::vector<StreamFacts>& in) {
+    auto resolution = siso(1, 1, 1)(in);
+    if (resolution && in[0].known) {
+      const auto before = in[0].notes.find("noise.std");
+      resolution->outputs[0].notes["noise.std"] = {before == in[0].notes.end() ? 1.0 : 2.0 * before->second.at(0)};
+    }
+    return resolution;
+  };
+  net.add("plant", {"in"}, {"out"}, louder);
+  net.sink("meter");
+  net.connect("reference", "sum.in");
+  net.connect("sum", "plant");
+  net.connect("plant", "sum.feedback");
+  net.connect("plant", "meter");
+  const auto facts = net.facts();
+  CHECK(facts.blocks[3].inputs[0].notes == facts.blocks[2].outputs[0].notes);
+}
+
 TEST_CASE("facts: initial values must fit delay and channels") {
   Net net;
   net.phase.run.duration_s = 1.0;

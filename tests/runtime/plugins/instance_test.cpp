@@ -105,7 +105,19 @@ TEST_CASE("parameters of every type arrive in a block, and its log, input and ou
   const auto configured = gain->configure(values);
   INFO((configured ? "" : configured.error()));
   REQUIRE(configured);
-  REQUIRE(gain->resolve({real_stream(1)}));
+  StreamFacts noisy = real_stream(1);
+  noisy.length = 500;
+  noisy.notes = {{"noise.std", {2.0}}, {"excitation.period", {0.5}}};
+  const auto resolved = gain->resolve({noisy});
+  REQUIRE(resolved);
+  CHECK(resolved->outputs[0].notes ==
+        std::map<std::string, std::vector<double>>{{"noise.std", {3.0}}, {"excitation.period", {0.5}}});
+  const auto advice = gain->advise({noisy}, resolved->outputs);
+  REQUIRE(advice);
+  REQUIRE(advice->size() == 2);
+  CHECK(advice->at(0).text == "500 samples");
+  CHECK(advice->at(1).level == BF_LOG_WARNING);
+  CHECK(advice->at(1).text == "noisy; give gain below 1");
   REQUIRE(gain->activate(activation()));
   CHECK(Call(*gain, {{2, 4}}, 1).output(0) == std::vector<double>{3, 6});
   bf_process last{};
@@ -151,4 +163,9 @@ TEST_CASE("the number of values and inputs must be the described one") {
   const auto scale = made("plain", "plain.scale");
   CHECK(scale->configure({}).error() == "0 parameter values for 1 parameters");
   CHECK(scale->resolve({}).error() == "facts of 0 inputs for 1");
+}
+
+TEST_CASE("a block that gives no advice has nothing to say") {
+  const auto scale = made("plain", "plain.scale");
+  CHECK(scale->advise({real_stream(1)}, {real_stream(1)})->empty());
 }

@@ -25,8 +25,9 @@ class FileSource final : public ByteSource {
     return got;
   }
 
-  Expected<void> rewind() override {
-    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) return unexpected("can't be read a second time: " + reason(errno));
+  Expected<void> seek(std::int64_t offset) override {
+    if (::fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0)
+      return unexpected("can't be read a second time: " + reason(errno));
     return {};
   }
 
@@ -45,8 +46,8 @@ class MemorySource final : public ByteSource {
     return got;
   }
 
-  Expected<void> rewind() override {
-    at_ = 0;
+  Expected<void> seek(std::int64_t offset) override {
+    at_ = std::min(static_cast<std::size_t>(offset), text_.size());
     return {};
   }
 

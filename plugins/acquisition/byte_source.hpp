@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bodeflow/error.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -8,13 +9,14 @@
 
 namespace bodeflow::acquisition {
 
-/// Bytes that can be read again from their start.
+/// Bytes that can be read again from any place.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
   /// Up to `size` bytes into `to`; how many, 0 at the end. Error: the system's reason.
   virtual Expected<std::size_t> read(char* to, std::size_t size) = 0;
-  virtual Expected<void> rewind() = 0;
+  /// The next `read` begins at this byte. Error: the system's reason.
+  virtual Expected<void> seek(std::int64_t offset) = 0;
 };
 
 /// The bytes of a file. Error: why it can't be opened; a folder is refused.

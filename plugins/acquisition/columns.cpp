@@ -21,25 +21,36 @@ std::string lower(std::string text) {
 // Longer texts are no unit, whatever they say.
 constexpr std::size_t kLongestUnit = 64;
 
-bool is_unit(std::string_view text) { return !text.empty() && text.size() <= kLongestUnit && is_known_unit(text); }
-
 /// In `name_unit`: `u_1` numbers a signal, and `x_min`, `x_var` name a least value and a variance, no minutes and no reactive
 /// power.
 bool is_unit_suffix(std::string_view text) {
   return is_unit(text) && !(text.front() >= '0' && text.front() <= '9') && text != "min" && text != "var";
 }
 
+// More names than these are not listed in a message.
+constexpr std::size_t kMostNames = 30;
+
 std::string list_of(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > kMostNames) text += " and " + std::to_string(names.size() - kMostNames) + " more";
   return text;
+}
+
+/// Why the leftover of that name is no column, or nothing.
+const Leftover* find_leftover(const std::vector<Leftover>& leftovers, const std::string& name) {
+  const auto found = std::find_if(leftovers.begin(), leftovers.end(), [&](const Leftover& l) { return l.name == name; });
+  return found == leftovers.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
+bool is_unit(std::string_view text) { return !text.empty() && text.size() <= kLongestUnit && is_known_unit(text); }
+
 Column parse_header(std::string_view text) {
   text = trimmed(text);
-  Column column{std::string(text), std::string(text), ""};
+  Column column;
+  column.header = column.name = text;
   const std::size_t open = text.rfind('[');
   const std::size_t line = text.rfind('_');
   std::string_view name, unit;
@@ -60,7 +71,8 @@ Column parse_header(std::string_view text) {
   return column;
 }
 
-Expected<std::size_t> find_column(const std::vector<Column>& columns, const std::string& name) {
+Expected<std::size_t> find_column(const std::vector<Column>& columns, const std::string& name,
+                                  const std::vector<Leftover>& leftovers) {
   const std::string wanted(trimmed(name));
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -75,6 +87,7 @@ Expected<std::size_t> find_column(const std::vector<Column>& columns, const std:
     for (const std::size_t i : found) headers.push_back(columns[i].header);
     return unexpected("column '" + wanted + "' is ambiguous: " + list_of(headers));
   }
+  if (const Leftover* other = find_leftover(leftovers, wanted)) return unexpected("'" + wanted + "' " + other->why);
   const Column* nearest = nullptr;
   std::size_t best = wanted.size() / 3;
   for (const Column& c : columns) {
@@ -85,7 +98,7 @@ Expected<std::size_t> find_column(const std::vector<Column>& columns, const std:
       nearest = &c;
     }
   }
-  std::string text = "no column '" + wanted + "'; the file has " + list_of(headers);
+  std::string text = "no column '" + wanted + "'; the file has " + (headers.empty() ? "none" : list_of(headers));
   if (nearest != nullptr) text += " (did you mean '" + nearest->header + "'?)";
   return unexpected(text);
 }
@@ -97,9 +110,11 @@ std::optional<double> seconds_per(const std::string& unit) {
   return static_cast<double>(known->numerator) / static_cast<double>(known->denominator) * std::pow(10.0, known->decimal);
 }
 
-bool is_time(const Column& column) {
-  const std::string name = lower(column.name);
-  return (name == "t" || name == "time") && seconds_per(column.unit).has_value();
+bool is_named_time(const Column& column) {
+  const std::string name = lower(column.name.substr(column.name.find_last_of("/.") + 1));
+  return name == "t" || name == "time";
 }
+
+bool is_time(const Column& column) { return is_named_time(column) && seconds_per(column.unit).has_value(); }
 
 }  // namespace bodeflow::acquisition

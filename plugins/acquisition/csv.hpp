@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "byte_source.hpp"
 #include "table.hpp"
 
@@ -12,11 +14,9 @@ namespace bodeflow::acquisition {
 /// Lines end with LF or CRLF. Passed over: a UTF-8 byte order mark, lines that begin with `#`, empty lines before the first
 /// row and after the last, blanks around fields, one separator at the end of a line. Fields may stand in quotes.
 /// Refused with "file:line:column: what": all else, see README.md. Columns that are not selected may hold anything.
+/// Values that are not finite are refused here, by their text.
 ///
 /// `name` is the file's name in messages.
 Expected<std::unique_ptr<TableReader>> open_csv(std::unique_ptr<ByteSource> source, const std::string& name);
-
-/// The reader for a file by its ending: .csv, .txt, .tsv, .dat. Errors: unknown ending, file that can't be opened, bad header.
-Expected<std::unique_ptr<TableReader>> open_table(const std::string& path);
 
 }  // namespace bodeflow::acquisition

@@ -61,15 +61,7 @@ Expected<Header, TextError> read_header(LineReader& lines) {
   if (!fields) return {Unexpected<TextError>{fields.error()}};
   if (fields->size() > 1 && fields->back().text.empty() && !fields->back().quoted) fields->pop_back();
   if (auto done = check_names(*fields, header.line); !done) return {Unexpected<TextError>{done.error()}};
-  for (const Field& f : *fields) {
-    header.columns.push_back(parse_header(f.text));
-    if (!is_time(header.columns.back())) continue;
-    if (header.time) {
-      return refuse(header.line, f.column,
-                    "two time columns, " + shown(header.columns[*header.time].header) + " and " + shown(f.text));
-    }
-    header.time = header.columns.size() - 1;
-  }
+  for (const Field& f : *fields) header.columns.push_back(parse_header(f.text));
   return header;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <bodeflow/block.hpp>
-#include <map>
+#include <memory>
 
-#include "table.hpp"
+#include "scan.hpp"
 
 namespace bodeflow::acquisition {
 
@@ -27,14 +27,16 @@ class FileBlock final : public Block {
   using Channels = std::vector<std::size_t>;
 
   Channels select(const std::vector<std::string>& names, const char* parameter);
-  void select_all();
+  void select_all(const Timing& timing);
   std::size_t place_of(std::size_t column);
-  void report(const Timing& timing) const;
+  Part read_part(const Parameters& p) const;
+  void scan(const Timing& timing);
   void state(Out<double> port, const Channels& channels, Facts& f) const;
   void give(Out<double> port, const Channels& channels, std::size_t rows, Io& io) const;
 
   std::string path_;
   std::unique_ptr<TableReader> reader_;
+  Part part_;
   TableSummary summary_;
   std::vector<std::size_t> selected_;  // columns of the file that are read
   Channels out_channels_, input_channels_, output_channels_;

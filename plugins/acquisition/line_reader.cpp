@@ -16,11 +16,12 @@ Unexpected<TextError> refuse(std::int64_t line, std::int64_t column, std::string
 
 LineReader::LineReader(ByteSource& source) : source_(&source), buffer_(kBuffer) {}
 
-Expected<void, TextError> LineReader::rewind() {
-  if (auto done = source_->rewind(); !done) return refuse(0, 0, done.error().text);
+Expected<void, TextError> LineReader::go_to(std::int64_t offset, std::int64_t number) {
+  if (auto done = source_->seek(offset); !done) return refuse(0, 0, done.error().text);
   begin_ = end_ = 0;
+  source_offset_ = offset;
   at_end_ = false;
-  number_ = 0;
+  number_ = number - 1;
   return {};
 }
 
@@ -36,6 +37,7 @@ Expected<bool, TextError> LineReader::fill() {
   const auto got = source_->read(buffer_.data() + end_, buffer_.size() - end_);
   if (!got) return refuse(0, 0, got.error().text);
   end_ += *got;
+  source_offset_ += static_cast<std::int64_t>(*got);
   at_end_ = *got == 0;
   return !at_end_;
 }

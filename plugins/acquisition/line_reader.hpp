@@ -30,8 +30,11 @@ class LineReader {
   /// Counted from one.
   std::int64_t number() const { return number_; }
 
-  /// Back to the first line.
-  Expected<void, TextError> rewind();
+  /// The byte at which the next line begins.
+  std::int64_t offset() const { return source_offset_ - static_cast<std::int64_t>(end_ - begin_); }
+
+  /// To the line that begins at this byte and has this number: the first by default.
+  Expected<void, TextError> go_to(std::int64_t offset = 0, std::int64_t number = 1);
 
  private:
   Expected<bool, TextError> fill();
@@ -40,6 +43,7 @@ class LineReader {
   ByteSource* source_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;
+  std::int64_t source_offset_ = 0;  // of the byte behind those in the buffer
   bool at_end_ = false;
   std::string_view line_;
   std::int64_t number_ = 0;

@@ -39,30 +39,31 @@ std::string short_text(double value) {
 }
 
 std::string Sampling::describe_step(double step) const {
-  const double expected = interval_s();
+  const double expected = (last_ - first_) / static_cast<double>(count_ - 1);
   int digits = 0;
   const std::string steps = number_text(roundest(step, 1e-6, digits)) + " s";
   const std::string interval = number_text(roundest(expected, 1e-3, digits)) + " s";
+  const std::string after = " after " + short_text(last_) + " s";
   if (step >= kGap * expected) {
     const std::string lost = number_text(std::round(step / expected) - 1.0);
-    return "gap of " + lost + (lost == "1" ? " sample" : " samples") + ": a step of " + steps + " where samples are " + interval +
-           " apart";
+    return "gap of " + lost + (lost == "1" ? " sample" : " samples") + after + ": a step of " + steps + " where samples are " +
+           interval + " apart";
   }
   if (std::abs(step - expected) <= kTolerance * expected) {
     return "not equally sampled: time has drifted by more than 10 % of " + interval + ", the sampling interval so far";
   }
-  return "not equally sampled: a step of " + steps + " where samples are " + interval + " apart (tolerance 10 % of it)";
+  return "not equally sampled: a step of " + steps + after + " where samples are " + interval + " apart (tolerance 10 % of it)";
 }
 
-std::optional<std::string> Sampling::add(double time_s, double resolution_s) {
+std::optional<std::string> Sampling::add(double time_s) {
   if (count_ == 0) {
     first_ = last_ = time_s;
-    resolution_ = resolution_s;
     count_ = 1;
     return std::nullopt;
   }
   const double step = time_s - last_;
-  if (!(step > 0.0)) return "time does not rise: " + number_text(time_s) + " s after " + number_text(last_) + " s";
+  if (step == 0.0) return "time " + number_text(time_s) + " s stands twice";
+  if (!(step > 0.0)) return "time runs back: " + number_text(time_s) + " s after " + number_text(last_) + " s";
   const auto n = static_cast<double>(count_);
   const double elapsed = time_s - first_;
   const double least = elapsed / (n + kTolerance), greatest = elapsed / (n - kTolerance);
@@ -70,18 +71,38 @@ std::optional<std::string> Sampling::add(double time_s, double resolution_s) {
   if (count_ > 1 && (least > greatest_ || greatest < least_)) return describe_step(step);
   least_ = count_ == 1 ? least : std::max(least, least_);
   greatest_ = count_ == 1 ? greatest : std::min(greatest, greatest_);
-  resolution_ = std::min(resolution_, resolution_s);
+  if (count_ == 1) step_ = step;
+  const double r = elapsed - n * step_;
+  sum_ += r;
+  sum_n_ += n * r;
+  sum_squares_ += r * r;
   last_ = time_s;
   ++count_;
   return std::nullopt;
 }
 
-double Sampling::interval_s() const { return count_ < 2 ? 0.0 : (last_ - first_) / static_cast<double>(count_ - 1); }
+double Sampling::interval_s() const {
+  if (count_ < 2) return 0.0;
+  const auto n = static_cast<double>(count_);
+  const double spread = n * (n * n - 1.0) / 12.0;  // sum of (k - mean of k)^2
+  return step_ + (sum_n_ - (n - 1.0) / 2.0 * sum_) / spread;
+}
 
-Rate Sampling::rate() const {
+double Sampling::interval_deviation_s() const {
+  if (count_ < 3) return 0.0;
+  const auto n = static_cast<double>(count_);
+  const double spread = n * (n * n - 1.0) / 12.0;
+  const double slope = interval_s() - step_;
+  const double rest = sum_squares_ - sum_ * sum_ / n - slope * slope * spread;  // sum of squared distances to the line
+  return std::sqrt(std::max(rest, 0.0) / (n - 2.0) / spread);
+}
+
+Rate Sampling::rate(double resolution_s) const {
   const double interval = interval_s();
   if (!(interval > 0.0)) return {};
-  const double tolerance = std::max(resolution_ / (last_ - first_), kFinest);
+  // Errors of half a place each, at their worst for the slope of a line: 1.5 places over the whole length.
+  const double rounding = 1.5 * resolution_s / static_cast<double>(count_ - 1);
+  const double tolerance = std::max(std::max(rounding, interval_deviation_s()) / interval, kFinest);
   int interval_digits = 0, rate_digits = 0;
   const double round_interval = roundest(interval, tolerance, interval_digits);
   const double round_rate = roundest(1.0 / interval, tolerance, rate_digits);

@@ -1,5 +1,6 @@
 #include "summary.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -14,8 +15,8 @@ constexpr std::int64_t kRuns = 3;
 
 }  // namespace
 
-void SummaryOfColumns::Extreme::take(double x, bool beyond, bool first) {
-  if (first || beyond) {
+void SummaryOfColumn::Extreme::take(double x, bool beyond) {
+  if (beyond) {
     value = x;
     run = 1;
     runs = 0;
@@ -26,23 +27,30 @@ void SummaryOfColumns::Extreme::take(double x, bool beyond, bool first) {
   }
 }
 
-SummaryOfColumns::SummaryOfColumns(std::size_t columns) : states_(columns) {}
-
-void SummaryOfColumns::add(std::span<const double> row) {
-  for (std::size_t c = 0; c < states_.size(); ++c) {
-    states_[c].least.take(row[c], row[c] < states_[c].least.value, first_);
-    states_[c].greatest.take(row[c], row[c] > states_[c].greatest.value, first_);
+void SummaryOfColumn::add(std::span<const double> values) {
+  if (values.empty()) return;
+  if (empty_) {
+    least_.value = greatest_.value = values.front();
+    empty_ = false;
   }
-  first_ = false;
+  double least = values.front(), greatest = least;
+  for (const double x : values) {
+    least = x < least ? x : least;
+    greatest = x > greatest ? x : greatest;
+  }
+  if (least > least_.value && greatest < greatest_.value) {  // most of a long signal: no sample is at an extreme
+    least_.run = greatest_.run = 0;
+    return;
+  }
+  for (const double x : values) {
+    least_.take(x, x < least_.value);
+    greatest_.take(x, x > greatest_.value);
+  }
 }
 
-std::vector<ColumnSummary> SummaryOfColumns::columns() const {
-  std::vector<ColumnSummary> all;
-  for (const State& s : states_) all.push_back({s.least.value, s.greatest.value, s.least.runs, s.greatest.runs});
-  return all;
-}
+ColumnSummary SummaryOfColumn::result() const { return {least_.value, greatest_.value, least_.runs, greatest_.runs}; }
 
-double resolution_of(std::string_view number) {
+int last_digit_of(std::string_view number) {
   const std::size_t e = number.find_first_of("eE");
   const std::string_view digits = number.substr(0, e);
   const std::size_t point = digits.find_first_of(".,");
@@ -55,7 +63,7 @@ double resolution_of(std::string_view number) {
     std::from_chars(begin, end, written);
     exponent += std::abs(written) < 1000 ? written : 0;
   }
-  return std::pow(10.0, exponent);
+  return exponent;
 }
 
 std::string clipping_suspicion(const ColumnSummary& column) {

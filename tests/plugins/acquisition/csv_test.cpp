@@ -9,48 +9,21 @@
 
 #include "acquisition/summary.hpp"
 #include "catch.hpp"
+#include "read_whole.hpp"
 
 using namespace bodeflow;
 using namespace bodeflow::acquisition;
 
 namespace {
 
-/// All columns but time of a CSV text, with what the scan found; or the error.
-struct Result {
-  std::vector<Column> columns;
-  TableSummary summary;
-  std::vector<std::vector<double>> values;
-  std::string error;
-};
-
-Result read_text(const std::string& text, const Timing& timing = {}, std::vector<std::size_t> selected = {}) {
-  Result r;
-  auto reader = open_csv(open_memory(text), "d.csv");
-  if (!reader) return r.error = reader.error().text, r;
-  r.columns = (*reader)->columns();
-  if (selected.empty()) {
-    for (std::size_t i = 0; i < r.columns.size(); ++i) {
-      if ((*reader)->time_column() != i) selected.push_back(i);
-    }
-  }
-  auto summary = (*reader)->scan(selected, timing);
-  if (!summary) return r.error = summary.error().text, r;
-  r.summary = *summary;
-  if (auto started = (*reader)->start(selected); !started) return r.error = started.error().text, r;
-  r.values.resize(selected.size());
-  std::vector<std::vector<double>> chunk(selected.size(), std::vector<double>(7));
-  std::vector<double*> places;
-  for (auto& c : chunk) places.push_back(c.data());
-  while (true) {
-    const auto got = (*reader)->read(places, 7);
-    if (!got) return r.error = got.error().text, r;
-    for (std::size_t c = 0; c < chunk.size(); ++c)
-      r.values[c].insert(r.values[c].end(), chunk[c].begin(), chunk[c].begin() + static_cast<std::ptrdiff_t>(*got));
-    if (*got < 7) return r;
-  }
+/// All columns but time of a CSV text, or those named.
+test::Table read_text(const std::string& text, const Timing& timing = {}, const std::vector<std::string>& names = {},
+                      const Part& part = {}) {
+  test::Table t = test::read_whole(open_csv(open_memory(text), "F"), names, timing, part);
+  return t;
 }
 
-const Timing kAt10Hz{10.0, false};
+const Timing kAt10Hz{10.0, false, "", ""};
 
 struct Broken {
   const char* what;
@@ -63,49 +36,47 @@ struct Broken {
 TEST_CASE("CSV: each kind of broken file is refused with its place and reason") {
   using namespace std::string_literals;
   const std::vector<Broken> cases = {
-      {"empty file", "", "d.csv: empty file"},
-      {"comments alone", "# a\n\n# b\n", "d.csv: no header: only empty lines and comments"},
-      {"no rows", "u [V],y [rad]\n", "d.csv:1: no rows follow the header"},
+      {"empty file", "", "F: empty file"},
+      {"comments alone", "# a\n\n# b\n", "F: no header: only empty lines and comments"},
+      {"no rows", "u [V],y [rad]\n", "F: no rows"},
       {"no header", "1.0,2.0\n3,4\n",
-       "d.csv:1:1: no header: the first line holds numbers; begin the file with a line of names, such as 't [s],u [V],y [rad]'"},
+       "F:1:1: no header: the first line holds numbers; begin the file with a line of names, such as 't [s],u [V],y [rad]'"},
       {"no header, decimal commas", "1,5;2,5\n",
-       "d.csv:1:1: no header: the first line holds numbers; begin the file with a line of names, such as 't [s],u [V],y [rad]'"},
-      {"column without a name", "u,,y\n1,2,3\n", "d.csv:1:3: column 2 has no name"},
-      {"duplicate name", "u,y,u\n1,2,3\n", "d.csv:1:5: column name 'u' stands twice: columns 1 and 3"},
-      {"name in Latin-1", "u,\xB0\n1,2\n", "d.csv:1:3: the name of column 2 is not UTF-8 text"},
-      {"two time columns", "t [s],u,time [ms]\n0,1,2\n", "d.csv:1:9: two time columns, 't [s]' and 'time [ms]'"},
-      {"row too short", "u,y\n1,2\n3\n", "d.csv:3:2: 1 field; the header has 2"},
-      {"row too long", "u,y\n1,2\n3,4,5\n", "d.csv:3:5: 3 fields; the header has 2"},
-      {"two separators too many", "u,y\n1,2,,\n", "d.csv:2:5: 4 fields; the header has 2"},
-      {"last line cut off", "u,y\n1,2\n3,", "d.csv:3:3: column 'y': value missing"},
-      {"text for a number", "u,y [rad]\n1,2\n3,off\n", "d.csv:3:3: column 'y [rad]': 'off' is not a number"},
-      {"text behind a number", "u\n1.5V\n", "d.csv:2:1: column 'u': '1.5V' is not a number"},
-      {"hexadecimal", "u\n0x10\n", "d.csv:2:1: column 'u': '0x10' is not a number"},
-      {"two signs", "u\n+-1\n", "d.csv:2:1: column 'u': '+-1' is not a number"},
-      {"digit grouping in points", "u;y\n1.234,5;2\n",
-       "d.csv:2:1: column 'u': '1.234,5' is no number: grouped digits are not read"},
-      {"digit grouping in commas", "u;y\n1,234,567;2\n", "d.csv:2:1: column 'u': '1,234,567' is not a number"},
-      {"nan", "u\n1\nnan\n", "d.csv:3:1: column 'u': 'nan' is not finite"},
-      {"infinity", "u\n-inf\n", "d.csv:2:1: column 'u': '-inf' is not finite"},
-      {"too large", "u\n1\n1e999\n", "d.csv:3:1: column 'u': '1e999' is beyond the range of a double"},
-      {"missing value", "u,y\n1,2\n,4\n", "d.csv:3:1: column 'u': value missing"},
+       "F:1:1: no header: the first line holds numbers; begin the file with a line of names, such as 't [s],u [V],y [rad]'"},
+      {"column without a name", "u,,y\n1,2,3\n", "F:1:3: column 2 has no name"},
+      {"duplicate name", "u,y,u\n1,2,3\n", "F:1:5: column name 'u' stands twice: columns 1 and 3"},
+      {"name in Latin-1", "u,\xB0\n1,2\n", "F:1:3: the name of column 2 is not UTF-8 text"},
+      {"two time columns", "t [s],u,time [ms]\n0,1,2\n",
+       "F: several time columns, 't [s]' and 'time [ms]'; say which by time_column"},
+      {"row too short", "u,y\n1,2\n3\n", "F:3:2: 1 field; the header has 2"},
+      {"row too long", "u,y\n1,2\n3,4,5\n", "F:3:5: 3 fields; the header has 2"},
+      {"two separators too many", "u,y\n1,2,,\n", "F:2:5: 4 fields; the header has 2"},
+      {"last line cut off", "u,y\n1,2\n3,", "F:3:3: column 'y': value missing"},
+      {"text for a number", "u,y [rad]\n1,2\n3,off\n", "F:3:3: column 'y [rad]': 'off' is not a number"},
+      {"text behind a number", "u\n1.5V\n", "F:2:1: column 'u': '1.5V' is not a number"},
+      {"hexadecimal", "u\n0x10\n", "F:2:1: column 'u': '0x10' is not a number"},
+      {"two signs", "u\n+-1\n", "F:2:1: column 'u': '+-1' is not a number"},
+      {"digit grouping in points", "u;y\n1.234,5;2\n", "F:2:1: column 'u': '1.234,5' is no number: grouped digits are not read"},
+      {"digit grouping in commas", "u;y\n1,234,567;2\n", "F:2:1: column 'u': '1,234,567' is not a number"},
+      {"nan", "u\n1\nnan\n", "F:3:1: column 'u': 'nan' is not finite"},
+      {"infinity", "u\n-inf\n", "F:2:1: column 'u': '-inf' is not finite"},
+      {"too large", "u\n1\n1e999\n", "F:3:1: column 'u': '1e999' is beyond the range of a double"},
+      {"missing value", "u,y\n1,2\n,4\n", "F:3:1: column 'u': value missing"},
       {"decimal comma after points", "u;y\n1.5;2\n1,5;2\n",
-       "d.csv:3:1: column 'u': '1,5': decimal comma, but a decimal point in line 2"},
+       "F:3:1: column 'u': '1,5': decimal comma, but a decimal point in line 2"},
       {"decimal point after commas", "u;y\n1,5;2\n1;2.5\n",
-       "d.csv:3:3: column 'y': '2.5': decimal point, but a decimal comma in line 2"},
-      {"quote not closed", "u,y\n1,2\n\"3,4\n5,6\n", "d.csv:3:1: quote opened here is not closed on its line"},
-      {"text after a quote", "u,y\n\"1\"2,3\n", "d.csv:2:4: text after a closing quote"},
-      {"empty line between rows", "u\n1\n\n2\n", "d.csv:3:1: empty line between rows: is a sample lost here?"},
-      {"NUL byte", "u,y\n1,2\n3,\0004\n"s, "d.csv:3:3: NUL byte: this is no text, or the file is damaged"},
-      {"NUL byte in the header", "u,\0y\n1,2\n"s, "d.csv:1:3: NUL byte: this is no text, or the file is damaged"},
-      {"carriage returns for line ends", "u,y\r1,2\r3,4\r",
-       "d.csv:1:4: carriage return inside a line; lines end with LF or CRLF"},
-      {"UTF-16", "\xFF\xFEu\0,\0y\0\n\0"s, "d.csv:1:1: UTF-16 text; save the file as UTF-8"},
-      {"very long line", "u\n" + std::string(3 << 20, '1') + "\n", "d.csv:2: line longer than 1 MiB: is this a table of text?"},
-      {"very long line at the end", "u\n" + std::string(3 << 20, '1'),
-       "d.csv:2: line longer than 1 MiB: is this a table of text?"},
+       "F:3:3: column 'y': '2.5': decimal point, but a decimal comma in line 2"},
+      {"quote not closed", "u,y\n1,2\n\"3,4\n5,6\n", "F:3:1: quote opened here is not closed on its line"},
+      {"text after a quote", "u,y\n\"1\"2,3\n", "F:2:4: text after a closing quote"},
+      {"empty line between rows", "u\n1\n\n2\n", "F:3:1: empty line between rows: is a sample lost here?"},
+      {"NUL byte", "u,y\n1,2\n3,\0004\n"s, "F:3:3: NUL byte: this is no text, or the file is damaged"},
+      {"NUL byte in the header", "u,\0y\n1,2\n"s, "F:1:3: NUL byte: this is no text, or the file is damaged"},
+      {"carriage returns for line ends", "u,y\r1,2\r3,4\r", "F:1:4: carriage return inside a line; lines end with LF or CRLF"},
+      {"UTF-16", "\xFF\xFEu\0,\0y\0\n\0"s, "F:1:1: UTF-16 text; save the file as UTF-8"},
+      {"very long line", "u\n" + std::string(3 << 20, '1') + "\n", "F:2: line longer than 1 MiB: is this a table of text?"},
+      {"very long line at the end", "u\n" + std::string(3 << 20, '1'), "F:2: line longer than 1 MiB: is this a table of text?"},
       {"long text in a number", "u\n" + std::string(60, 'x') + "\n",
-       "d.csv:2:1: column 'u': 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx...' is not a number"},
+       "F:2:1: column 'u': 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx...' is not a number"},
   };
   for (const Broken& c : cases) {
     INFO(c.what);
@@ -115,27 +86,30 @@ TEST_CASE("CSV: each kind of broken file is refused with its place and reason") 
 
 TEST_CASE("CSV: times that are not equally spaced are refused with the line and the step") {
   const std::vector<Broken> cases = {
-      {"gap", "t [s],u\n0,1\n0.1,1\n0.2,1\n0.5,1\n", "d.csv:5: gap of 2 samples: a step of 0.3 s where samples are 0.1 s apart"},
+      {"gap", "t [s],u\n0,1\n0.1,1\n0.2,1\n0.5,1\n",
+       "F:5: gap of 2 samples after 0.2 s: a step of 0.3 s where samples are 0.1 s apart"},
       {"one sample lost", "t [ms],u\n0,1\n1,1\n2,1\n4,1\n",
-       "d.csv:5: gap of 1 sample: a step of 0.002 s where samples are 0.001 s apart"},
+       "F:5: gap of 1 sample after 0.002 s: a step of 0.002 s where samples are 0.001 s apart"},
       {"jitter", "t [s],u\n0,1\n1,1\n2.4,1\n",
-       "d.csv:4: not equally sampled: a step of 1.4 s where samples are 1 s apart (tolerance 10 % of it)"},
-      {"time stands still", "t [s],u\n0,1\n0.1,1\n0.1,1\n", "d.csv:4: time does not rise: 0.1 s after 0.1 s"},
-      {"time runs back", "t [s],u\n0,1\n0.1,1\n0.05,1\n", "d.csv:4: time does not rise: 0.05 s after 0.1 s"},
-      {"one row", "t [s],u\n0,1\n", "d.csv: one row, so the time column gives no sampling rate"},
-      {"text for a time", "t [s],u\nnow,1\n", "d.csv:2:1: column 't [s]': 'now' is not a number"},
+       "F:4: not equally sampled: a step of 1.4 s after 1 s where samples are 1 s apart (tolerance 10 % of it)"},
+      {"time stands still", "t [s],u\n0,1\n0.1,1\n0.1,1\n", "F:4: time 0.1 s stands twice"},
+      {"time runs back", "t [s],u\n0,1\n0.1,1\n0.05,1\n", "F:4: time runs back: 0.05 s after 0.1 s"},
+      {"one row", "t [s],u\n0,1\n", "F: one row, so the time column gives no sampling rate"},
+      {"text for a time", "t [s],u\nnow,1\n", "F:2:1: column 't [s]': 'now' is not a number"},
       {"no time column", "u,y\n1,2\n",
-       "d.csv:1: no time column (`t [s]` or `time [s]`); give the sampling rate, such as rate: 2500 Hz"},
+       "F: no sampling rate and no time column (`t` or `time` with a unit of time, such as `t [s]`); give the sampling rate, "
+       "such as rate: 2500 Hz"},
       {"a time column without its unit", "t,u\n0,1\n1,1\n",
-       "d.csv:1: no time column (`t [s]` or `time [s]`); give the sampling rate, such as rate: 2500 Hz"},
+       "F: no sampling rate and no time column (`t` or `time` with a unit of time, such as `t [s]`); give the sampling rate, "
+       "such as rate: 2500 Hz, or if 't' holds time its unit, such as time_unit: s"},
   };
   for (const Broken& c : cases) {
     INFO(c.what);
     CHECK(read_text(c.text).error == c.message);
   }
-  CHECK(read_text("t [s],u\n0,1\n0.1,2\n0.2,3\n", {12.0, false}).error ==
-        "d.csv: the time column says 10 Hz, parameter rate says 12 Hz; time: ignore reads the file by the rate alone");
-  CHECK(read_text("t [s],u\n0,1\n0.1,2\n0.2,3\n", {12.0, true}).error.empty());
+  CHECK(read_text("t [s],u\n0,1\n0.1,2\n0.2,3\n", {12.0, false, "", ""}).error ==
+        "F: the time column says 10 Hz, parameter rate says 12 Hz; time: ignore reads the file by the rate alone");
+  CHECK(read_text("t [s],u\n0,1\n0.1,2\n0.2,3\n", {12.0, true, "", ""}).error.empty());
 }
 
 TEST_CASE("CSV: slow drift of the sampling interval is refused, jitter within a tenth of a step is not") {
@@ -147,7 +121,7 @@ TEST_CASE("CSV: slow drift of the sampling interval is refused, jitter within a 
     jitter += std::to_string(0.01 * (n + (n % 3 - 1) * 0.04)) + ",1\n";
   }
   CHECK(read_text(drift).error.find("not equally sampled: time has drifted by more than 10 % of") != std::string::npos);
-  const Result kept = read_text(jitter);
+  const test::Table kept = read_text(jitter);
   CHECK(kept.error.empty());
   CHECK(kept.summary.rate.hz() == Approx(100.0).epsilon(1e-3));
 }
@@ -187,7 +161,7 @@ TEST_CASE("CSV: separators, decimal commas, quotes, CRLF, BOM, comments and blan
   };
   for (const std::string& text : texts) {
     INFO(text);
-    const Result r = read_text(text, kAt10Hz);
+    const test::Table r = read_text(text, kAt10Hz);
     REQUIRE(r.error == "");
     REQUIRE(r.columns.size() == 2);
     CHECK(r.columns[0].name == "u");
@@ -206,8 +180,8 @@ TEST_CASE("CSV: separators, decimal commas, quotes, CRLF, BOM, comments and blan
 
 TEST_CASE("CSV: columns that are not selected may hold anything but must keep the count of fields") {
   const std::string text = "when,u,note\n10:00,1,\"a, b\"\n10:01,2,\n10:02,3,nan\n";
-  CHECK(read_text(text, kAt10Hz, {1}).values == std::vector<std::vector<double>>{{1, 2, 3}});
-  CHECK(read_text("when,u\n10:00,1\n10:01,2,3\n", kAt10Hz, {1}).error == "d.csv:3:9: 3 fields; the header has 2");
+  CHECK(read_text(text, kAt10Hz, {"u"}).values == std::vector<std::vector<double>>{{1, 2, 3}});
+  CHECK(read_text("when,u\n10:00,1\n10:01,2,3\n", kAt10Hz, {"u"}).error == "F:3:9: 3 fields; the header has 2");
 }
 
 TEST_CASE("CSV: every double is read correctly rounded") {
@@ -224,7 +198,7 @@ TEST_CASE("CSV: every double is read correctly rounded") {
     std::snprintf(line, sizeof line, "%.17g,%d\n", x, n);
     text += line;
   }
-  const Result r = read_text(text, kAt10Hz);
+  const test::Table r = read_text(text, kAt10Hz);
   REQUIRE(r.error == "");
   CHECK(r.values[0] == sent);
 }
@@ -235,7 +209,7 @@ TEST_CASE("CSV: flat tops that come back are suspected of clipping, a constant o
     const double s = std::sin(0.1 * n);
     text += std::to_string(std::min(s, 0.8)) + "," + std::to_string(s) + ",3," + (n < 200 ? "0\n" : "1\n");
   }
-  const Result r = read_text(text, kAt10Hz);
+  const test::Table r = read_text(text, kAt10Hz);
   REQUIRE(r.error == "");
   CHECK(clipping_suspicion(r.summary.columns[0]) == "rests 7 times at 0.8 for three samples or more: clipped?");
   for (const std::size_t c : {1u, 2u, 3u}) CHECK(clipping_suspicion(r.summary.columns[c]) == "");

@@ -1,37 +1,16 @@
 #include "acquisition/file_block.hpp"
 
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-
 #include "catch.hpp"
 #include "plugins/block_driver.hpp"
+#include "read_whole.hpp"
 
 using namespace bodeflow;
 using acquisition::FileBlock;
 using test::BlockDriver;
 using test::failure_of;
+using test::TemporaryFile;
 
 namespace {
-
-/// A file that is gone when the test is over.
-class TemporaryFile {
- public:
-  TemporaryFile(const std::string& ending, const std::string& text) {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("bodeflow_file_block_" + std::to_string(::getpid()) + "_" + std::to_string(count++) + ending);
-    write(text);
-  }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  void write(const std::string& text) { std::ofstream(path_, std::ios::binary) << text; }
-  std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string table(int rows) {
   std::string text = "t [s],iq_A,theta_motor_rad,theta_load_rad,note\n";
@@ -100,7 +79,7 @@ TEST_CASE("file block: without named columns, out carries all but time") {
 }
 
 TEST_CASE("file block: what cannot be read is refused by name") {
-  const TemporaryFile file(".csv", table(10)), other(".mat", "");
+  const TemporaryFile file(".csv", table(10)), other(".xls", "");
   const auto refusal = [](const std::string& path, auto&& prepare) {
     BlockDriver<FileBlock> block;
     block.set("file", path);
@@ -111,7 +90,8 @@ TEST_CASE("file block: what cannot be read is refused by name") {
     return [=](BlockDriver<FileBlock>& b) { b.set(parameter, list); };
   };
   CHECK(refusal("/nowhere/x.csv", [](auto&) {}) == "/nowhere/x.csv: can't be opened: No such file or directory");
-  CHECK(refusal(other.path(), [](auto&) {}) == other.path() + ": ending '.mat'; read are .csv, .txt, .tsv, .dat");
+  CHECK(refusal(other.path(), [](auto&) {}) ==
+        other.path() + ": ending '.xls'; read are .csv, .txt, .tsv, .dat, .h5, .hdf5, .mat, .wav, .flac, .uff, .unv");
   CHECK(refusal(file.path(), names("input", {"iq_B"})) ==
         file.path() +
             ": input: no column 'iq_B'; the file has t [s], iq_A, theta_motor_rad, theta_load_rad, note (did you mean 'iq_A'?)");

@@ -1,7 +1,5 @@
 #include "source.hpp"
 
-#include <cstdio>
-
 namespace bodeflow::generators {
 
 void describe_source(Describe& d) {
@@ -24,12 +22,6 @@ StreamFacts source_facts(Rate rate, const std::string& unit, int channels, std::
   facts.length = length;
   facts.unit = unit;
   return facts;
-}
-
-std::string hertz(double frequency) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.10g Hz", frequency);
-  return text;
 }
 
 }  // namespace bodeflow::generators

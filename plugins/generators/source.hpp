@@ -3,6 +3,8 @@
 #include <bodeflow/block.hpp>
 #include <string>
 
+#include "hertz.hpp"
+
 /// What the generators have in common: a stream that begins here has a sample rate and a unit of its own.
 namespace bodeflow::generators {
 
@@ -16,8 +18,5 @@ Rate source_rate(const Parameters& p);
 
 /// The facts of a source's output.
 StreamFacts source_facts(Rate rate, const std::string& unit, int channels = 1, std::int64_t length = -1);
-
-/// A frequency as text: "125 Hz".
-std::string hertz(double frequency);
 
 }  // namespace bodeflow::generators

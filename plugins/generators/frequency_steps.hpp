@@ -22,8 +22,8 @@ struct FrequencyStep {
 inline constexpr std::int64_t kLongestWindow = 100'000'000;
 
 /// The fewest cycles whose whole number of samples, rounded to nearest, gives `wanted_hz` within `tolerance` (relative).
-/// A tolerance of 1 / (2 N) is always met by windows of N samples, so the window stays below 1 / (2 tolerance) samples or one
-/// cycle, whichever is longer. Errors: a frequency that is not above 0 and below half of the rate once it is placed; a window
+/// Rounding moves a window of N samples by at most 1 / (2 N), so it stays below 1 / (2 tolerance) samples plus one cycle, but
+/// next to half of the rate. Errors: a frequency that is not above 0 and below half of the rate once it is placed; a window
 /// beyond kLongestWindow. tolerance > 0.
 Expected<FrequencyStep> place_frequency(double wanted_hz, Rate rate, double tolerance);
 

@@ -10,6 +10,7 @@
 namespace bodeflow::generators {
 namespace {
 
+constexpr double kLeastTolerance = 1e-7;  // windows of 5e6 samples
 constexpr std::int64_t kMostFrequencies = 100'000;
 // Samples at one frequency: 11 days at 1 GHz.
 constexpr std::int64_t kLongestDwell = 1'000'000'000'000'000;
@@ -25,6 +26,8 @@ std::vector<double> wanted_frequencies(const Parameters& p) {
     fail("no frequencies: give a list 'frequencies', or 'grid' with first, last and count");
   const double first = p.number("grid.first"), last = p.number("grid.last");
   const std::int64_t count = p.integer("grid.count");
+  if (count < 1 || count > kMostFrequencies)
+    fail("grid.count is " + std::to_string(count) + ", allowed: 1 to " + std::to_string(kMostFrequencies));
   if (count > 1 && first == last) fail("grid: first and last are both " + hertz(first) + "; allowed: two frequencies");
   return frequency_grid(first, last, count, p.text("grid.spacing") == "logarithmic");
 }
@@ -54,7 +57,7 @@ void SteppedSine::describe(Describe& d) {
   d.parameter("grid.spacing", "logarithmic").choices({"logarithmic", "linear"}).doc("constant ratio or constant distance");
   d.parameter("tolerance", 1e-3)
       .unit("1")
-      .range(1e-7, 0.1)
+      .range(kLeastTolerance, 0.1)
       .doc("how far a frequency may be moved, relative; a smaller one makes longer windows");
   d.parameter("amplitude", std::vector<double>{1.0}).unit("").doc("peak: one value for all frequencies, or one a frequency");
   d.parameter("phase", "continuous")
@@ -76,8 +79,9 @@ void SteppedSine::configure(const Parameters& p) {
   rate_ = source_rate(p);
   unit_ = p.text("unit");
   continuous_ = p.text("phase") == "continuous";
-  silence_ =
-      static_cast<std::int64_t>(std::min(std::round(p.number("silence") * rate_.hz()), static_cast<double>(kLongestDwell)));
+  const double silence = p.number("silence") * rate_.hz();
+  if (!(silence >= 0.0)) fail("silence is at least 0 s");
+  silence_ = static_cast<std::int64_t>(std::min(std::round(silence), static_cast<double>(kLongestDwell)));
   dwell_s_ = p.has("dwell") ? p.number("dwell") : 0.0;
   configure_steps(p);
 }
@@ -86,6 +90,7 @@ void SteppedSine::configure_steps(const Parameters& p) {
   const std::vector<double> wanted = wanted_frequencies(p);
   if (static_cast<std::int64_t>(wanted.size()) > kMostFrequencies)
     fail(std::to_string(wanted.size()) + " frequencies, allowed: " + std::to_string(kMostFrequencies));
+  if (!(p.number("tolerance") >= kLeastTolerance)) fail("tolerance is at least 1e-7");
   auto steps = place_frequencies(wanted, rate_, p.number("tolerance"));
   if (!steps) fail(steps.error().text);
   steps_ = std::move(*steps);
@@ -93,6 +98,9 @@ void SteppedSine::configure_steps(const Parameters& p) {
   if (amplitudes_.size() != 1 && amplitudes_.size() != steps_.size()) {
     fail("amplitude has " + std::to_string(amplitudes_.size()) + " values, allowed: 1, or one for each of the " +
          std::to_string(steps_.size()) + " frequencies");
+  }
+  for (const double amplitude : amplitudes_) {
+    if (!std::isfinite(amplitude)) fail("an amplitude is not finite");
   }
   amplitudes_.resize(steps_.size(), amplitudes_.front());
 }

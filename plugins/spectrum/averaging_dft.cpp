@@ -2,128 +2,140 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <complex>
+#include <numbers>
 
 namespace bodeflow::spectrum {
-namespace {
 
-// A line is told from noise when the power of its mean is 10 dB above the variance of that mean.
-constexpr double kExcitedOverVariance = 10.0;
-// The transform rounds at about 1e-16 of the strongest line times a few; what is below this is no signal.
-constexpr double kRounding = 1e-12;
-
-/// Spectrum of `x`, scaled by 1/N. The first sample is taken off before and its share added to line 0, so that an offset far
-/// above the signal (the angle of a turning shaft) costs no digits at the other lines.
-void spectrum_of(numerics::RealDft& dft, const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& frame,
-                 Eigen::VectorXcd& out) {
-  const double offset = x[0];
-  frame = x.array() - offset;
-  dft.forward(frame, out);
-  out /= static_cast<double>(x.size());
-  out[0] += offset;
-}
-
-double norm_largest(const Eigen::VectorXcd& spectrum, const std::vector<std::int64_t>& lines) {
-  double largest = 0.0;
-  for (const std::int64_t k : lines) largest = std::max(largest, std::abs(spectrum[k]));
-  return largest;
-}
-
-}  // namespace
-
-AveragingDft::AveragingDft(Eigen::Index period, Eigen::Index outputs)
-    : period_(period), dft_(period), frame_(period), input_step_(dft_.lines()), output_step_(dft_.lines()) {
-  const Eigen::Index lines = dft_.lines();
-  input_mean_.resize(lines);
-  input_squares_.resize(lines);
-  output_mean_.resize(lines, outputs);
-  output_squares_.resize(lines, outputs);
-  products_.resize(lines, outputs);
+AveragingDft::AveragingDft(Eigen::Index period, Layout layout, Detrend detrend)
+    : period_(period), layout_(layout), detrend_(detrend) {
+  const Eigen::Index signals = layout.signals();
+  dft_.reserve(static_cast<std::size_t>(signals));
+  for (Eigen::Index a = 0; a < signals; ++a) {
+    dft_.emplace_back(period);
+    dft_.back().samples().setZero();
+    spectrum_.push_back(dft_.back().transform());
+  }
+  const Eigen::Index lines = dft_.front().lines();
+  for (auto* m : {&mean_, &first_, &second_}) m->resize(lines, signals);
+  squares_.resize(lines, signals);
+  products_.resize(lines, signals * (signals - 1) / 2);
+  level_moment_.resize(signals);
   clear();
 }
 
 void AveragingDft::clear() {
   periods_ = 0;
-  input_mean_.setZero();
-  input_squares_.setZero();
-  output_mean_.setZero();
-  output_squares_.setZero();
+  mean_.setZero();
+  squares_.setZero();
   products_.setZero();
+  level_moment_.setZero();
 }
 
-void AveragingDft::add(const Eigen::Ref<const Eigen::VectorXd>& input, const Eigen::Ref<const Eigen::MatrixXd>& output) {
-  ++periods_;
+/// Spectrum of `x` into spectrum_[signal], times N.
+void AveragingDft::transform(Eigen::Index signal, const Eigen::Ref<const Eigen::VectorXd>& x) {
+  numerics::RealDft& dft = dft_[static_cast<std::size_t>(signal)];
+  const double offset = x[0];
+  dft.samples() = x.array() - offset;
+  dft.transform()[0] += offset * static_cast<double>(period_);
+}
+
+/// Takes the spectrum of one signal into its mean and its products with the signals before it; leaves the deviation from the
+/// mean before it. One pass over the lines a signal, one a pair.
+void AveragingDft::update(Eigen::Index signal) {
   const auto count = static_cast<double>(periods_);
+  const double scale = 1.0 / static_cast<double>(period_), share = 1.0 / count;
   const double weight = (count - 1.0) / count;  // the sum of squares grows by weight |x_P - mean_(P-1)|^2
-  spectrum_of(dft_, input, frame_, input_step_);
-  input_step_ -= input_mean_;
-  input_mean_ += input_step_ / count;
-  input_squares_ += weight * input_step_.cwiseAbs2();
-  for (Eigen::Index i = 0; i < output.cols(); ++i) {
-    spectrum_of(dft_, output.col(i), frame_, output_step_);
-    output_step_ -= output_mean_.col(i);
-    output_mean_.col(i) += output_step_ / count;
-    output_squares_.col(i) += weight * output_step_.cwiseAbs2();
-    products_.col(i) += weight * output_step_.cwiseProduct(input_step_.conjugate());
+  double* x = reinterpret_cast<double*>(spectrum_[static_cast<std::size_t>(signal)].data());
+  double* mean = reinterpret_cast<double*>(mean_.col(signal).data());
+  double* squares = squares_.col(signal).data();
+  const Eigen::Index lines = mean_.rows();
+  for (Eigen::Index k = 0; k < lines; ++k) {
+    const double re = x[2 * k] * scale - mean[2 * k], im = x[2 * k + 1] * scale - mean[2 * k + 1];
+    mean[2 * k] += re * share;
+    mean[2 * k + 1] += im * share;
+    squares[k] += weight * (re * re + im * im);
+    x[2 * k] = re;
+    x[2 * k + 1] = im;
+  }
+  for (Eigen::Index before = 0; before < signal; ++before) {
+    const double* other = reinterpret_cast<const double*>(spectrum_[static_cast<std::size_t>(before)].data());
+    double* sum = reinterpret_cast<double*>(products_.col(pair_column(signal, before)).data());
+    for (Eigen::Index k = 0; k < lines; ++k) {
+      sum[2 * k] += weight * (x[2 * k] * other[2 * k] + x[2 * k + 1] * other[2 * k + 1]);
+      sum[2 * k + 1] += weight * (x[2 * k + 1] * other[2 * k] - x[2 * k] * other[2 * k + 1]);
+    }
   }
 }
 
-std::vector<std::int64_t> AveragingDft::chosen(const LineChoice& choice) const {
-  std::vector<std::int64_t> lines = choice.candidates;
-  if (lines.empty()) {
-    for (std::int64_t k = 1; k <= (period_ - 1) / 2; ++k) lines.push_back(k);
+void AveragingDft::keep_single_periods() {
+  Eigen::MatrixXcd& kept = periods_ == 1 ? first_ : second_;
+  for (Eigen::Index a = 0; a < kept.cols(); ++a) {
+    kept.col(a) = spectrum_[static_cast<std::size_t>(a)] / static_cast<double>(period_);
   }
-  if (choice.threshold <= 0.0) return lines;
-  const double least = choice.threshold * norm_largest(input_mean_, lines);
+}
+
+void AveragingDft::add(const Eigen::Ref<const Eigen::MatrixXd>& frame) {
+  for (Eigen::Index a = 0; a < frame.cols(); ++a) transform(a, frame.col(a));
+  ++periods_;
+  if (periods_ <= 2) keep_single_periods();
+  for (Eigen::Index a = 0; a < frame.cols(); ++a) {
+    const double level = spectrum_[static_cast<std::size_t>(a)][0].real() / static_cast<double>(period_);
+    level_moment_[a] += static_cast<double>(periods_ - 1) * (level - first_(0, a).real());
+    update(a);
+  }
+}
+
+void AveragingDft::add(const Eigen::Ref<const Eigen::MatrixXd>& input, const Eigen::Ref<const Eigen::MatrixXd>& output) {
+  Eigen::MatrixXd frame(period_, layout_.signals());
+  frame << input, output;
+  add(frame);
+}
+
+/// Takes the share of a linear drift off the mean spectra.
+void AveragingDft::correct_drift(Eigen::MatrixXcd& mean) const {
+  const auto count = static_cast<double>(periods_), samples = static_cast<double>(period_);
+  if (periods_ < 2) return;
+  const double spread = count * (count * count - 1.0) / 12.0;  // sum_p (p - mean p)^2
+  for (Eigen::Index a = 0; a < mean.cols(); ++a) {
+    const double levels = count * (mean_(0, a).real() - first_(0, a).real());  // sum_p (m_p - m_0)
+    const double slope = (level_moment_[a] - 0.5 * (count - 1.0) * levels) / (spread * samples);
+    for (Eigen::Index k = 1; k < mean.rows(); ++k) {
+      const double angle = -2.0 * std::numbers::pi * static_cast<double>(k) / samples;
+      mean(k, a) -= slope / (std::polar(1.0, angle) - 1.0);
+    }
+  }
+}
+
+Expected<Moments> AveragingDft::moments() const {
+  if (periods_ == 0) return unexpected("no whole period was taken");
   const auto count = static_cast<double>(periods_);
-  const auto silent = [&](std::int64_t k) {
-    const double variance = input_squares_[k] / (count * (count - 1.0));
-    return !(std::abs(input_mean_[k]) >= least && std::norm(input_mean_[k]) > kExcitedOverVariance * variance);
-  };
-  lines.erase(std::remove_if(lines.begin(), lines.end(), silent), lines.end());
-  return lines;
+  Moments m;
+  m.periods = periods_;
+  m.degrees_of_freedom = count - 1.0;
+  m.mean = mean_;
+  if (detrend_ == Detrend::linear) correct_drift(m.mean);
+  m.first = first_;
+  if (periods_ == 1) return m;
+  const double scale = 1.0 / (count * (count - 1.0));
+  m.variance = scale * squares_;
+  m.covariance = scale * products_;
+  m.second = second_;
+  // What stands in spectrum_ is the newest period minus the mean before it: mean_P = mean_(P-1) + deviation / P.
+  m.last.resizeLike(mean_);
+  for (Eigen::Index a = 0; a < mean_.cols(); ++a) {
+    m.last.col(a) = mean_.col(a) + (count - 1.0) / count * spectrum_[static_cast<std::size_t>(a)];
+  }
+  return m;
 }
 
 Expected<Estimate> AveragingDft::estimate(const LineChoice& choice, Form form) const {
   if (periods_ < 2) {
     return unexpected("the variance needs at least 2 periods; found " + std::to_string(periods_));
   }
-  Estimate e;
-  e.lines = chosen(choice);
-  if (e.lines.empty())
-    return unexpected("no line of the input stands out from its noise: is the input excited with this period?");
-  const double strongest = input_mean_.tail(input_mean_.size() - 1).cwiseAbs().maxCoeff();
-  e.periods = periods_;
-  const auto count = static_cast<double>(periods_);
-  const double scale = 1.0 / (count * (count - 1.0));
-  const auto lines = static_cast<Eigen::Index>(e.lines.size());
-  const Eigen::Index outputs = output_mean_.cols();
-  e.input_mean.resize(lines);
-  e.input_variance.resize(lines);
-  for (auto* m : {&e.output_mean, &e.cross_covariance, &e.response}) m->resize(lines, outputs);
-  for (auto* m : {&e.output_variance, &e.variance}) m->resize(lines, outputs);
-  for (Eigen::Index row = 0; row < lines; ++row) {
-    const std::int64_t k = e.lines[static_cast<std::size_t>(row)];
-    const std::complex<double> u = input_mean_[k];
-    if (!(std::abs(u) > kRounding * strongest)) return unexpected("line " + std::to_string(k) + " of the input is not excited");
-    e.input_mean[row] = u;
-    e.input_variance[row] = scale * input_squares_[k];
-    for (Eigen::Index i = 0; i < outputs; ++i) {
-      const std::complex<double> y = output_mean_(k, i), g = y / u, covariance = scale * products_(k, i);
-      const double variance_y = scale * output_squares_(k, i);
-      const double noise = form == Form::known_input
-                               ? variance_y
-                               : variance_y + std::norm(g) * e.input_variance[row] - 2.0 * std::real(std::conj(g) * covariance);
-      if (!std::isfinite(noise / std::norm(u)))
-        return unexpected("line " + std::to_string(k) + ": the values are too large to be averaged");
-      e.output_mean(row, i) = y;
-      e.output_variance(row, i) = variance_y;
-      e.cross_covariance(row, i) = covariance;
-      e.response(row, i) = g;
-      e.variance(row, i) = std::max(0.0, noise) / std::norm(u);  // below zero by rounding alone
-    }
-  }
-  return e;
+  Measured measured{layout_, period_, 1, {}};
+  measured.parts.push_back(*moments());
+  return estimate_response(measured, choice, form);
 }
 
 }  // namespace bodeflow::spectrum

@@ -3,94 +3,74 @@
 #include <algorithm>
 #include <cmath>
 
+#include "averaging_dft.hpp"
+#include "excitation_advice.hpp"
+#include "period_selection.hpp"
+#include "response_checks.hpp"
+#include "transient_removal.hpp"
+
 namespace bodeflow::spectrum {
-namespace {
-
-// Where no line is named: -10 dB of the strongest line divides the lines of a flat multisine from what a drive or an amplifier
-// adds between them.
-constexpr double kDefaultThreshold = 0.3;
-// A frame and four spectra of this length take some 10 GB.
-constexpr std::int64_t kLongestPeriod = 100'000'000;
-
-}  // namespace
 
 void AveragingDftBlock::describe(Describe& d) {
-  d.id("spectrum.averaging_dft").summary("Measures a frequency response by averaging spectra over whole periods.").cost_ns(40);
+  d.id("spectrum.averaging_dft").summary("Measures a frequency response by averaging spectra over whole periods.").cost_ns(8);
   d.doc(
-      "G = Y/U of the mean spectra, with the variance that the scatter between periods gives it: errors_in_variables "
-      "|G|^2 (var_y/|Y|^2 + var_u/|U|^2 - 2 Re(cov_yu/(Y conj U))), known_input var_y/|U|^2; variances and covariance are of the "
-      "means, divisor P(P-1). Spectra are scaled by 1/N. Assumes a periodic steady state: skip the transient. What repeats with "
-      "the "
-      "period, such as nonlinear distortion, is not in the variance. Biased where the input stands less than 10 dB above its "
-      "noise. "
-      "A period that is not complete at the end is dropped and counted.");
+      "G = Y U^-1 of the mean spectra of one experiment an input, with the variance that the scatter between periods gives it "
+      "(errors_in_variables: of dY - G dU, known_input: of dY; reference: G = S_yr S_ur^-1 for closed loops). With "
+      "`realisations` of random "
+      "phases the robust method: the best linear approximation, noise and nonlinear distortion apart. Spectra are scaled by 1/N. "
+      "Assumes a "
+      "periodic steady state: skip the transient, or have it removed. With one realisation, what repeats with the period, such "
+      "as "
+      "nonlinear distortion, is not in the variance: `levels` shows it where the excitation leaves lines out. A period that is "
+      "not complete at "
+      "the end is dropped and counted.");
   d.reference(
-      "R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., 2012, chapter 2, "
+      "R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., 2012, chapters 2 to 4 and 7, "
       "doi:10.1002/9781118287422");
-  d.stream_in(input).doc("what excites the plant: one channel");
+  d.stream_in(input).doc("what excites the plant: one channel per input");
   d.stream_in(output).doc("what the plant answers: one channel per output");
+  d.stream_in(reference).optional().doc("for form: reference; what drives the loop from outside: as many channels as inputs");
   d.message_out(out).record_type("frequency_response").doc("the frequency response, at the end and after each `every` periods");
-  d.required<std::int64_t>("period").range(3, 1e8).doc("samples in one period of the excitation");
-  d.parameter("skip", std::int64_t{0}).range(0, 1e9).doc("periods at the start that are left out: the transient");
-  d.parameter("form", "errors_in_variables")
-      .choices({"errors_in_variables", "known_input"})
-      .doc("errors_in_variables: input and output are measured; known_input: the input has no noise");
-  d.parameter("every", std::int64_t{0}).range(0, 1e9).doc("a record after each so many periods; 0: only one, at the end");
-  d.optional<std::int64_t>("lines.first").range(1, 1e8).doc("first line (multiple of rate / period); default 1");
-  d.optional<std::int64_t>("lines.last")
-      .range(1, 1e8)
-      .doc("last line; default (period - 1) / 2, the last below the Nyquist frequency");
-  d.parameter("lines.step", std::int64_t{1}).range(1, 1e8).doc("from line to line");
-  d.parameter("lines.list", std::vector<std::int64_t>{})
-      .range(1, 1e8)
-      .doc("the lines one by one, rising, in place of first, last, step");
-  d.optional<double>("lines.threshold")
-      .unit("1")
-      .range(0.0, 1.0)
-      .doc(
-          "keep only excited lines: mean input at least so many times its strongest line, and 10 dB above its variance; 0: keep "
-          "all. "
-          "Default: 0 where lines are named, else 0.3");
+  d.message_out(levels)
+      .record_type("spectral_levels")
+      .doc("levels and noise at all lines of the band, excited or not, at the end");
+  describe_averaging_dft_settings(d);
 }
 
-void AveragingDftBlock::configure(const Parameters& p) {
-  period_ = p.integer("period");
-  if (period_ < 3 || period_ > kLongestPeriod) fail("period " + std::to_string(period_) + "; allowed: 3 to 100000000");
-  skip_ = p.integer("skip");
-  every_ = p.integer("every");
-  measurement_.form = p.text("form") == "known_input" ? Form::known_input : Form::errors_in_variables;
-  configure_lines(p);
-}
+void AveragingDftBlock::configure(const Parameters& p) { settings_ = averaging_dft_settings(p); }
 
-void AveragingDftBlock::configure_lines(const Parameters& p) {
-  const std::int64_t highest = (period_ - 1) / 2;
-  const bool ranged = p.has("lines.first") || p.has("lines.last") || p.given("lines.step");
-  choice_.candidates = p.integers("lines.list");
-  if (ranged && !choice_.candidates.empty()) fail("lines: give either list, or first, last and step");
-  choice_.threshold = p.has("lines.threshold")                ? p.number("lines.threshold")
-                      : ranged || !choice_.candidates.empty() ? 0.0
-                                                              : kDefaultThreshold;
-  if (ranged) {
-    const std::int64_t first = p.has("lines.first") ? p.integer("lines.first") : 1;
-    const std::int64_t last = p.has("lines.last") ? p.integer("lines.last") : highest;
-    const std::int64_t step = p.integer("lines.step");
-    if (first < 1 || step < 1) fail("lines: first and step are at least 1");
-    if (first > last) fail("lines: first " + std::to_string(first) + " is above last " + std::to_string(last));
-    if (last > highest) {
-      fail("lines: last " + std::to_string(last) + " is at or above the Nyquist frequency; at most " + std::to_string(highest) +
-           " with a period of " + std::to_string(period_));
-    }
-    for (std::int64_t k = first; k <= last; k += step) choice_.candidates.push_back(k);
+void AveragingDftBlock::check_signals(const Facts& f) const {
+  const StreamFacts &u = f.in(input), &y = f.in(output), &r = f.in(reference);
+  if (!u.rate.known()) fail("input 'input' has no sample rate");
+  if (settings_.form == Form::reference && !r.known) fail("form: reference needs the input 'reference' connected");
+  if (settings_.form != Form::reference && r.known) fail("input 'reference' is connected; it is used with form: reference alone");
+  if (r.known && r.channels != u.channels) {
+    fail("input 'reference' has " + std::to_string(r.channels) + " channels; needed: as many as 'input', " +
+         std::to_string(u.channels));
   }
-  for (std::size_t i = 0; i < choice_.candidates.size(); ++i) {
-    const std::int64_t k = choice_.candidates[i];
-    if (k > highest) {
-      fail("lines: line " + std::to_string(k) + " is at or above the Nyquist frequency; at most " + std::to_string(highest) +
-           " with a period of " + std::to_string(period_));
-    }
-    if (i > 0 && k <= choice_.candidates[i - 1]) {
-      fail("lines: list does not rise: " + std::to_string(k) + " after " + std::to_string(choice_.candidates[i - 1]));
-    }
+  for (const StreamFacts* s : {&y, &r}) {
+    if (!s->known || s->clock == u.clock) continue;
+    fail("inputs 'input' and '" + std::string(s == &y ? "output" : "reference") + "' have the clock domains '" + u.clock +
+         "' and '" + s->clock + "'; a spectrum needs one clock");
+  }
+  if (schedule_.experiments < u.channels) {
+    fail("experiments is " + std::to_string(schedule_.experiments) + "; needed: at least one for each of the " +
+         std::to_string(u.channels) + " inputs");
+  }
+  const std::string fault = fault_of(schedule_);
+  if (!fault.empty()) fail(fault);
+  const std::int64_t needed = schedule_.needed();
+  const std::string many = schedule_.periods > 0 ? std::to_string(schedule_.periods) : "2";
+  const std::string each = schedule_.count() > 1 ? " in each of " + std::to_string(schedule_.count()) + " experiments" : "";
+  for (const StreamFacts* s : {&u, &y, &r}) {
+    if (!s->known || s->length < 0 || s->length >= needed) continue;
+    fail("the " +
+         std::string(s == &u   ? "input"
+                     : s == &y ? "output"
+                               : "reference") +
+         " has " + std::to_string(s->length) + " samples; needed: at least " + std::to_string(needed) + " (" +
+         std::to_string(schedule_.skip) + " skipped and " + many + " averaged periods of " + std::to_string(schedule_.period) +
+         each + ")");
   }
 }
 
@@ -105,94 +85,170 @@ void AveragingDftBlock::name_signals(const StreamFacts& facts, const char* port)
 }
 
 void AveragingDftBlock::resolve(Facts& f) {
-  const StreamFacts &u = f.in(input), &y = f.in(output);
+  const StreamFacts &u = f.in(input), &y = f.in(output), &r = f.in(reference);
   if (!u.known || !y.known) return;
-  if (u.channels != 1) {
-    fail("input 'input' has " + std::to_string(u.channels) + " channels; one input is measured at a time");
-  }
-  if (!u.rate.known()) fail("input 'input' has no sample rate");
-  if (u.clock != y.clock) {
-    fail("inputs 'input' and 'output' have the clock domains '" + u.clock + "' and '" + y.clock +
-         "'; a spectrum needs one clock");
-  }
-  for (const StreamFacts* s : {&u, &y}) {
-    if (s->length < 0 || s->length >= (skip_ + 2) * period_) continue;
-    fail("the " + std::string(s == &u ? "input" : "output") + " has " + std::to_string(s->length) +
-         " samples; needed: at least " + std::to_string((skip_ + 2) * period_) + " (" + std::to_string(skip_) +
-         " skipped and 2 averaged periods of " + std::to_string(period_) + ")");
-  }
+  schedule_ = settings_.schedule;
+  if (schedule_.experiments == 0) schedule_.experiments = u.channels;
+  check_signals(f);
+  measurement_ = Measurement{};
+  measurement_.form = settings_.form;
+  measurement_.layout = {u.channels, y.channels, r.known ? r.channels : 0};
   measurement_.rate = u.rate;
-  measurement_.period = period_;
-  measurement_.names.clear();
-  measurement_.units.clear();
+  measurement_.period = schedule_.period;
+  measurement_.confidence = settings_.confidence;
   name_signals(u, "input");
   name_signals(y, "output");
+  if (r.known) name_signals(r, "reference");
+}
+
+void AveragingDftBlock::advise(const Facts& f, Advice& a) {
+  if (!f.in(input).known || !f.in(output).known) return;
+  const Planned planned{schedule_, settings_.choice, settings_.form, settings_.remove_transient};
+  const StreamFacts& from = f.in(reference).known ? f.in(reference) : f.in(input);
+  for (const Remark& remark : measurement_advice(planned, from, f.in(input), f.in(output))) {
+    remark.warning ? a.warn(remark.text) : a.tell(remark.text);
+  }
 }
 
 void AveragingDftBlock::activate(const Activation&) {
-  const auto signals = static_cast<Eigen::Index>(measurement_.names.size());
-  frame_.resize(period_, signals);
-  average_.emplace(period_, signals - 1);
+  const Layout& layout = measurement_.layout;
+  const std::int64_t period = schedule_.period;
+  frame_.resize(period, layout.signals());
+  if (settings_.remove_transient) {
+    collector_ = std::make_unique<TransientRemoval>(period, layout);
+  } else if (settings_.outliers > 0.0) {
+    collector_ = std::make_unique<PeriodSelection>(period, layout, settings_.outliers);
+  } else {
+    const auto detrend = settings_.detrend ? AveragingDft::Detrend::linear : AveragingDft::Detrend::none;
+    collector_ = std::make_unique<AveragingDft>(period, layout, detrend);
+  }
   reset();
 }
 
 void AveragingDftBlock::reset() {
-  average_->clear();
-  filled_ = 0;
-  whole_ = sent_ = 0;
+  collector_->clear();
+  parts_.clear();
+  position_ = filled_ = 0;
+  experiment_ = used_ = sent_ = 0;
 }
 
-void AveragingDftBlock::check_finite(Eigen::Index channel, Eigen::Index from, Eigen::Index count) const {
-  for (Eigen::Index n = from; n < from + count; ++n) {
-    const double x = frame_(n, channel);
-    if (std::isfinite(x)) continue;
-    fail((channel == 0 ? "input '" : "output '") + measurement_.names[static_cast<std::size_t>(channel)] + "': sample " +
-         std::to_string(whole_ * period_ + n) + " is " + (std::isnan(x) ? "not a number" : "infinite"));
+std::span<const double> AveragingDftBlock::samples(Io& io, Eigen::Index signal) const {
+  const auto c = static_cast<int>(signal), inputs = static_cast<int>(measurement_.layout.inputs),
+             outputs = static_cast<int>(measurement_.layout.outputs);
+  if (c < inputs) return io.read(input, c);
+  return c < inputs + outputs ? io.read(output, c - inputs) : io.read(reference, c - inputs - outputs);
+}
+
+void AveragingDftBlock::check_finite(Io& io) const {
+  for (Eigen::Index a = 0; a < frame_.cols(); ++a) {
+    const auto x = samples(io, a);
+    // 0 * x is 0 unless x is not finite.
+    const Eigen::Map<const Eigen::VectorXd> all(x.data(), static_cast<Eigen::Index>(x.size()));
+    if ((all.array() * 0.0).sum() == 0.0) continue;
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      if (std::isfinite(x[n])) continue;
+      const bool in = a < measurement_.layout.inputs, ref = a >= measurement_.layout.inputs + measurement_.layout.outputs;
+      fail(std::string(in    ? "input '"
+                       : ref ? "reference '"
+                             : "output '") +
+           measurement_.names[static_cast<std::size_t>(a)] + "': sample " +
+           std::to_string(position_ + static_cast<std::int64_t>(n)) + " is " + (std::isnan(x[n]) ? "not a number" : "infinite"));
+    }
   }
 }
 
-/// Samples from..from+count of this call go to the frame, behind what is there.
-void AveragingDftBlock::copy(Io& io, std::size_t from, Eigen::Index count) {
-  for (Eigen::Index c = 0; c < frame_.cols(); ++c) {
-    const auto samples = c == 0 ? io.read(input) : io.read(output, static_cast<int>(c - 1));
-    std::copy_n(samples.begin() + static_cast<std::ptrdiff_t>(from), count, frame_.col(c).begin() + filled_);
-    check_finite(c, filled_, count);
+/// Samples of this call, from `from` on, go to the frame as far as it has room; their number.
+std::size_t AveragingDftBlock::copy(Io& io, std::size_t from) {
+  const std::size_t count = std::min(io.count() - from, static_cast<std::size_t>(schedule_.period - filled_));
+  for (Eigen::Index a = 0; a < frame_.cols(); ++a) {
+    std::copy_n(samples(io, a).begin() + static_cast<std::ptrdiff_t>(from), count, frame_.col(a).begin() + filled_);
   }
-  filled_ += count;
+  filled_ += static_cast<std::int64_t>(count);
+  return count;
 }
 
 void AveragingDftBlock::process(Io& io) {
+  check_finite(io);
   std::size_t n = 0;
-  while (n < io.count()) {
-    const Eigen::Index count = std::min(static_cast<Eigen::Index>(io.count() - n), period_ - filled_);
-    copy(io, n, count);
-    n += static_cast<std::size_t>(count);
-    if (filled_ < period_) break;
+  while (n < io.count() && experiment_ < schedule_.count()) {
+    const std::int64_t waiting = schedule_.averaged_from(experiment_) - (position_ + static_cast<std::int64_t>(n));
+    if (waiting > 0) {
+      n += static_cast<std::size_t>(std::min(waiting, static_cast<std::int64_t>(io.count() - n)));
+      continue;
+    }
+    n += copy(io, n);
+    if (filled_ < schedule_.period) break;
     filled_ = 0;
-    if (++whole_ <= skip_) continue;
-    average_->add(frame_.col(0), frame_.rightCols(frame_.cols() - 1));
-    if (every_ > 0 && average_->periods() >= 2 && average_->periods() % every_ == 0) send(io, n);
+    collector_->add(frame_);
+    used_ += schedule_.period;
+    const std::int64_t periods = collector_->periods();
+    if (periods == schedule_.periods) end_experiment();
+    if (settings_.every > 0 && periods >= 2 && periods % settings_.every == 0) {
+      measurement_.dropped_samples = position_ + static_cast<std::int64_t>(n) - used_;
+      send(io, n, false);
+    }
   }
+  position_ += static_cast<std::int64_t>(io.count());
 }
 
-void AveragingDftBlock::send(Io& io, std::uint64_t offset) {
-  measurement_.dropped_samples = std::min(whole_, skip_) * period_ + filled_;
-  const auto estimate = average_->estimate(choice_, measurement_.form);
+void AveragingDftBlock::end_experiment() {
+  auto moments = collector_->moments();
+  if (!moments) fail(moments.error().text);
+  parts_.push_back(std::move(*moments));
+  collector_->clear();
+  ++experiment_;
+}
+
+void AveragingDftBlock::send(Io& io, std::uint64_t offset, bool last) {
+  Measured measured{measurement_.layout, schedule_.period, schedule_.experiments, std::move(parts_)};
+  parts_.clear();
+  if (schedule_.periods == 0) {
+    auto moments = collector_->moments();
+    if (!moments) fail(moments.error().text);
+    measured.parts.push_back(std::move(*moments));
+  }
+  const auto estimate = estimate_response(measured, settings_.choice, settings_.form);
   if (!estimate) fail(estimate.error().text);
-  io.emit(out, response_record(*estimate, measurement_), offset);
-  sent_ = average_->periods();
+  const std::vector<std::int64_t>& named = settings_.choice.candidates;
+  const Levels band = levels_of(measured, estimate->lines, named.empty() ? estimate->lines.front() : named.front(),
+                                named.empty() ? estimate->lines.back() : named.back());
+  measurement_.warnings =
+      response_warnings({measured, *estimate, band, settings_.form, measurement_.line_hz(), measurement_.names});
+  const std::int64_t periods = collector_->periods();
+  if (!last || sent_ != periods || periods == 0 || filled_ > 0)
+    io.emit(out, response_record(*estimate, band, measurement_), offset);
+  sent_ = periods;
+  if (!last) return;
+  io.emit(levels, levels_record(band, *estimate, measurement_), offset);
+  for (const std::string& warning : measurement_.warnings) log_warning(warning);
+}
+
+/// Fails where the data ended before the measurement did.
+void AveragingDftBlock::require_complete() const {
+  const std::int64_t periods = collector_->periods();
+  if (schedule_.periods > 0) {
+    if (experiment_ == schedule_.count()) return;
+    fail("the data ended in " + name_of(schedule_, experiment_) + " after " + std::to_string(periods) + " of " +
+         std::to_string(schedule_.periods) + " averaged periods; needed: " + std::to_string(schedule_.needed()) +
+         " samples, found " + std::to_string(position_));
+  }
+  if (periods >= 2) return;
+  const std::int64_t whole = std::max<std::int64_t>(0, position_ - schedule_.start(0)) / schedule_.period;
+  fail(std::to_string(whole) + " whole periods of " + std::to_string(schedule_.period) + " samples, " +
+       std::to_string(std::min(whole, schedule_.skip)) + " of them skipped; needed: at least 2 after " +
+       std::to_string(schedule_.skip) + " skipped");
 }
 
 void AveragingDftBlock::finish(Io& io) {
-  if (average_->periods() < 2) {
-    fail(std::to_string(whole_) + " whole periods of " + std::to_string(period_) + " samples, " +
-         std::to_string(std::min(whole_, skip_)) + " of them skipped; needed: at least 2 after " + std::to_string(skip_) +
-         " skipped");
-  }
+  require_complete();
   if (filled_ > 0) log_info(std::to_string(filled_) + " samples at the end are no whole period and are dropped");
-  if (sent_ != average_->periods() || filled_ > 0) send(io, io.count());
+  measurement_.dropped_samples = position_ - used_;
+  send(io, io.count(), true);
 }
 
-void AveragingDftBlock::deactivate() { average_.reset(); }
+void AveragingDftBlock::deactivate() {
+  collector_.reset();
+  parts_.clear();
+}
 
 }  // namespace bodeflow::spectrum

@@ -1,32 +1,65 @@
 #include "response_record.hpp"
 
 #include <algorithm>
+#include <bodeflow/numerics/confidence.hpp>
 
 namespace bodeflow::spectrum {
 namespace {
 
+using Complex = std::complex<double>;
+using Shape = std::initializer_list<std::uint64_t>;
+
 bool is_one(const std::string& unit) { return unit.empty() || unit == "1"; }
-
-std::string squared(const std::string& unit) {
-  if (is_one(unit)) return unit;
-  return unit.find_first_of("/* ^") == std::string::npos ? unit + "^2" : "(" + unit + ")^2";
-}
-
-/// The common unit, or "" where they differ.
-std::string common(const std::vector<std::string>& units) {
-  const bool same = std::count(units.begin(), units.end(), units.front()) == static_cast<std::ptrdiff_t>(units.size());
-  return same ? units.front() : "";
-}
 
 /// Copies a matrix row by row, as records are; `shape` has as many elements as the matrix.
 template <class T, class Matrix>
-void put(RecordBuilder& record, const char* name, const std::string& unit, std::initializer_list<std::uint64_t> shape,
-         const Matrix& m) {
+void put(RecordBuilder& record, const char* name, const std::string& unit, Shape shape, const Matrix& m) {
   const auto data = record.array<T>(name, unit, shape);
   std::size_t at = 0;
   for (Eigen::Index k = 0; k < m.rows(); ++k) {
     for (Eigen::Index i = 0; i < m.cols(); ++i) data[at++] = m(k, i);
   }
+}
+
+/// The same, left out where the matrix is empty.
+void put_if_any(RecordBuilder& record, const char* name, const std::string& unit, Shape shape, const Eigen::MatrixXd& m) {
+  if (m.size() > 0) put<double>(record, name, unit, shape, m);
+}
+
+struct Units {
+  explicit Units(const Measurement& from)
+      : inputs(from.units.begin(), from.units.begin() + from.layout.inputs),
+        outputs(from.units.begin() + from.layout.inputs, from.units.begin() + from.layout.inputs + from.layout.outputs) {
+    for (const std::string& above : outputs) {
+      for (const std::string& below : inputs) ratios.push_back(ratio_unit(above, below));
+    }
+  }
+  std::vector<std::string> inputs, outputs, ratios;  // ratios: output by output
+};
+
+std::vector<std::string> part(const std::vector<std::string>& all, Eigen::Index from, Eigen::Index count) {
+  return {all.begin() + from, all.begin() + from + count};
+}
+
+void put_signals(RecordBuilder& r, const Estimate& e, const Units& units) {
+  if (e.input_mean.size() == 0) return;
+  const auto lines = static_cast<std::uint64_t>(e.lines.size()), outputs = static_cast<std::uint64_t>(e.output_mean.cols());
+  const std::string &input = units.inputs.front(), output = common_unit(units.outputs);
+  put<Complex>(r, "input_mean", input, {lines, 1}, e.input_mean);
+  put<double>(r, "input_variance", squared_unit(input), {lines, 1}, e.input_variance);
+  put<Complex>(r, "output_mean", output, {lines, outputs}, e.output_mean);
+  put<double>(r, "output_variance", squared_unit(output), {lines, outputs}, e.output_variance);
+  put<Complex>(r, "cross_covariance", "", {lines, outputs, 1}, e.cross_covariance);
+}
+
+void put_lines(RecordBuilder& r, const std::vector<std::int64_t>& lines) {
+  const auto numbers = r.array<std::int64_t>("line", "", {static_cast<std::uint64_t>(lines.size())});
+  std::copy(lines.begin(), lines.end(), numbers.begin());
+}
+
+const char* form_name(Form form) {
+  if (form == Form::known_input) return "known_input";
+  return form == Form::reference ? "reference" : "errors_in_variables";
 }
 
 }  // namespace
@@ -38,41 +71,81 @@ std::string ratio_unit(const std::string& above, const std::string& below) {
   return (is_one(above) ? "1" : above) + "/" + (simple ? below : "(" + below + ")");
 }
 
-RecordBuilder response_record(const Estimate& e, const Measurement& from) {
-  const std::string& input_unit = from.units.front();
-  const std::vector<std::string> output_units(from.units.begin() + 1, from.units.end());
-  std::vector<std::string> ratio_units;
-  for (const std::string& unit : output_units) ratio_units.push_back(ratio_unit(unit, input_unit));
-  const std::string output_unit = common(output_units), unit = common(ratio_units);
+std::string squared_unit(const std::string& unit) {
+  if (is_one(unit)) return unit;
+  return unit.find_first_of("/* ^") == std::string::npos ? unit + "^2" : "(" + unit + ")^2";
+}
 
+std::string common_unit(const std::vector<std::string>& units) {
+  const bool same = std::count(units.begin(), units.end(), units.front()) == static_cast<std::ptrdiff_t>(units.size());
+  return same ? units.front() : "";
+}
+
+void fill_frequencies(std::span<double> to, const std::vector<std::int64_t>& lines, const Rate& rate, std::int64_t period) {
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    to[k] = static_cast<double>(lines[k]) * static_cast<double>(rate.num) /
+            (static_cast<double>(rate.den) * static_cast<double>(period));
+  }
+}
+
+RecordBuilder response_record(const Estimate& e, const Levels& levels, const Measurement& from) {
+  const Units units(from);
+  const std::string unit = common_unit(units.ratios), output_unit = common_unit(units.outputs);
   RecordBuilder r("frequency_response");
-  r.set("form", from.form == Form::known_input ? "known_input" : "errors_in_variables");
+  r.set("form", form_name(from.form));
+  r.set("method", "spectrum.averaging_dft");
   r.set("periods", e.periods);
-  r.set("realisations", std::int64_t{1});
+  r.set("realisations", e.realisations);
   r.set("sample_rate", from.rate.hz());
   r.set("period", from.period);
   r.set("dropped_samples", from.dropped_samples);
-  r.set("input_names", std::vector<std::string>{from.names.front()});
-  r.set("output_names", std::vector<std::string>(from.names.begin() + 1, from.names.end()));
-  r.set("response_units", ratio_units);
+  r.set("input_names", part(from.names, 0, from.layout.inputs));
+  r.set("output_names", part(from.names, from.layout.inputs, from.layout.outputs));
+  r.set("response_units", units.ratios);
+  r.set("confidence", from.confidence);
+  r.set("degrees_of_freedom", e.degrees_of_freedom.minCoeff());
+  r.set("warnings", from.warnings);
 
   const auto lines = static_cast<std::uint64_t>(e.lines.size());
-  const auto outputs = static_cast<std::uint64_t>(e.response.cols());
-  const auto frequency = r.array<double>("frequency", "Hz", {lines});
-  for (std::size_t k = 0; k < e.lines.size(); ++k) {
-    frequency[k] = static_cast<double>(e.lines[k]) * static_cast<double>(from.rate.num) /
-                   (static_cast<double>(from.rate.den) * static_cast<double>(from.period));
-  }
-  using Complex = std::complex<double>;
-  put<Complex>(r, "response", unit, {lines, outputs, 1}, e.response);
-  put<double>(r, "variance", squared(unit), {lines, outputs, 1}, e.variance);
-  const auto numbers = r.array<std::int64_t>("line", "", {lines});
-  std::copy(e.lines.begin(), e.lines.end(), numbers.begin());
-  put<Complex>(r, "input_mean", input_unit, {lines, 1}, e.input_mean);
-  put<double>(r, "input_variance", squared(input_unit), {lines, 1}, e.input_variance);
-  put<Complex>(r, "output_mean", output_unit, {lines, outputs}, e.output_mean);
-  put<double>(r, "output_variance", squared(output_unit), {lines, outputs}, e.output_variance);
-  put<Complex>(r, "cross_covariance", "", {lines, outputs, 1}, e.cross_covariance);
+  const auto outputs = static_cast<std::uint64_t>(from.layout.outputs), inputs = static_cast<std::uint64_t>(from.layout.inputs);
+  fill_frequencies(r.array<double>("frequency", "Hz", {lines}), e.lines, from.rate, from.period);
+  put<Complex>(r, "response", unit, {lines, outputs, inputs}, e.response);
+  put<double>(r, "variance", squared_unit(unit), {lines, outputs, inputs}, e.variance);
+  const Eigen::MatrixXd radius = e.variance.binaryExpr(e.degrees_of_freedom, [&](double variance, double degrees) {
+    return numerics::confidence_radius(variance, degrees, from.confidence);
+  });
+  put<double>(r, "confidence_radius", unit, {lines, outputs, inputs}, radius);
+  put_lines(r, e.lines);
+  put_if_any(r, "noise_variance", squared_unit(unit), {lines, outputs, inputs}, e.noise_variance);
+  put_if_any(r, "nonlinear_variance", squared_unit(unit), {lines, outputs, inputs}, e.nonlinear_variance);
+  put_if_any(r, "noise_level", output_unit, {lines, outputs}, e.noise_level);
+  put_if_any(r, "odd_distortion", output_unit, {lines, outputs}, level_beside(levels, e.lines, Levels::odd));
+  put_if_any(r, "even_distortion", output_unit, {lines, outputs}, level_beside(levels, e.lines, Levels::even));
+  put_signals(r, e, units);
+  return r;
+}
+
+RecordBuilder levels_record(const Levels& levels, const Estimate& estimate, const Measurement& from) {
+  const Units units(from);
+  const std::string input_unit = common_unit(units.inputs), output_unit = common_unit(units.outputs);
+  RecordBuilder r("spectral_levels");
+  r.set("periods", estimate.periods);
+  r.set("realisations", estimate.realisations);
+  r.set("sample_rate", from.rate.hz());
+  r.set("period", from.period);
+  r.set("output_names", part(from.names, from.layout.inputs, from.layout.outputs));
+  r.set("input_name", from.names.front());
+  r.set("warnings", from.warnings);
+  const auto lines = static_cast<std::uint64_t>(levels.lines.size());
+  const auto outputs = static_cast<std::uint64_t>(from.layout.outputs);
+  fill_frequencies(r.array<double>("frequency", "Hz", {lines}), levels.lines, from.rate, from.period);
+  put_lines(r, levels.lines);
+  const auto kinds = r.array<std::int64_t>("kind", "", {lines});
+  std::copy(levels.kind.begin(), levels.kind.end(), kinds.begin());
+  put<double>(r, "output_level", output_unit, {lines, outputs}, levels.output_level);
+  put_if_any(r, "output_noise", output_unit, {lines, outputs}, levels.output_noise);
+  put<double>(r, "input_level", input_unit, {lines}, levels.input_level.leftCols(1));
+  if (levels.input_noise.size() > 0) put<double>(r, "input_noise", input_unit, {lines}, levels.input_noise.leftCols(1));
   return r;
 }
 

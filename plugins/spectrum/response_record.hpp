@@ -3,25 +3,45 @@
 #include <bodeflow/rate.hpp>
 #include <bodeflow/record.hpp>
 #include <string>
+#include <vector>
 
-#include "averaging_dft.hpp"
+#include "distortion.hpp"
+#include "estimate.hpp"
 
 namespace bodeflow::spectrum {
 
 /// What an estimate was made from.
 struct Measurement {
   Form form = Form::errors_in_variables;
-  Rate rate;                         ///< samples per second
-  std::int64_t period = 0;           ///< samples
-  std::int64_t dropped_samples = 0;  ///< of periods skipped, and of a period that was not complete
-  std::vector<std::string> names;    ///< of the input, then of the outputs
-  std::vector<std::string> units;    ///< likewise
+  Layout layout;
+  Rate rate;                          ///< samples per second
+  std::int64_t period = 0;            ///< samples
+  std::int64_t dropped_samples = 0;   ///< of periods skipped, between experiments, and of a period that was not complete
+  double confidence = 0.95;           ///< of the confidence circles
+  std::vector<std::string> names;     ///< of inputs, outputs, references
+  std::vector<std::string> units;     ///< likewise
+  std::vector<std::string> warnings;  ///< what spoils the result, each with what to do
+
+  double line_hz() const { return rate.hz() / static_cast<double>(period); }
 };
 
-/// The record `frequency_response` of an estimate; README.md lists its attributes and arrays.
-RecordBuilder response_record(const Estimate& estimate, const Measurement& from);
+/// The record `frequency_response` of an estimate; README.md lists its attributes and arrays. `levels`: of the band of the
+/// estimate.
+RecordBuilder response_record(const Estimate& estimate, const Levels& levels, const Measurement& from);
+
+/// The record `spectral_levels` of the lines of a band.
+RecordBuilder levels_record(const Levels& levels, const Estimate& estimate, const Measurement& from);
 
 /// The unit of a ratio: "rad/A"; "rad" and "1/A" where one of them is without unit, "1" where they are equal.
 std::string ratio_unit(const std::string& above, const std::string& below);
+
+/// The square of a unit: "rad^2", "(rad/A)^2".
+std::string squared_unit(const std::string& unit);
+
+/// The unit that all have, or "" where they differ.
+std::string common_unit(const std::vector<std::string>& units);
+
+/// Frequencies of lines [Hz], into `to`: k * rate / period, rounded once.
+void fill_frequencies(std::span<double> to, const std::vector<std::int64_t>& lines, const Rate& rate, std::int64_t period);
 
 }  // namespace bodeflow::spectrum

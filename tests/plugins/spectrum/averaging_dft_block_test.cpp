@@ -62,7 +62,7 @@ Sent run(int samples, std::size_t chunk, Prepare prepare) {
   block.set("period", std::int64_t{kPeriod});
   prepare(block);
   block.configure();
-  block.resolve({facts(1, "A", {"iq"}), facts(2, "rad", {"motor", "load"})});
+  block.resolve({facts(1, "A", {"iq"}), facts(2, "rad", {"motor", "load"}), {}});
   block.activate(chunk, Rate(1000, 1));
   const auto all = signals(samples);
   for (std::size_t n = 0; n < static_cast<std::size_t>(samples); n += chunk) {
@@ -73,6 +73,7 @@ Sent run(int samples, std::size_t chunk, Prepare prepare) {
   Sent sent;
   for (std::size_t i = 0; i < block.records().size(); ++i) {
     const bf_record& r = *block.records()[i];
+    if (RecordView(r.bytes).type() != "frequency_response") continue;
     sent.emplace_back(block.record_positions()[i], std::vector<std::uint8_t>(r.bytes, r.bytes + r.size));
   }
   return sent;
@@ -143,6 +144,7 @@ TEST_CASE("averaging_dft: no second record for the same periods at the end") {
 
 TEST_CASE("averaging_dft: signals that cannot be measured are refused by name") {
   const auto refusal = [](std::vector<StreamFacts> inputs) {
+    inputs.emplace_back();  // no reference
     BlockDriver<AveragingDftBlock> block;
     block.set("period", std::int64_t{kPeriod}).set("skip", std::int64_t{1});
     block.configure();
@@ -153,7 +155,8 @@ TEST_CASE("averaging_dft: signals that cannot be measured are refused by name") 
   no_rate.rate = {};
   other_clock.clock = "card";
   CHECK(refusal({u, y}) == "no failure");
-  CHECK(refusal({facts(3, "A", {"a", "b", "c"}), y}) == "input 'input' has 3 channels; one input is measured at a time");
+  CHECK(refusal({facts(3, "A", {"a", "b", "c"}), y}) ==
+        "3 experiments (realisations 1 x experiments 3) need `periods`: how many are averaged in each");
   CHECK(refusal({no_rate, y}) == "input 'input' has no sample rate");
   CHECK(refusal({u, other_clock}) ==
         "inputs 'input' and 'output' have the clock domains '' and 'card'; a spectrum needs one clock");
@@ -170,7 +173,7 @@ TEST_CASE("averaging_dft: too few periods, values that are not finite and silent
   BlockDriver<AveragingDftBlock> block;
   block.set("period", std::int64_t{kPeriod});
   block.configure();
-  block.resolve({facts(1, "A", {"iq"}), facts(2, "rad", {"motor", "load"})});
+  block.resolve({facts(1, "A", {"iq"}), facts(2, "rad", {"motor", "load"}), {}});
   block.activate(120, Rate(1000, 1));
   auto data = signals(120);
   data[1][1][77] = std::numeric_limits<double>::quiet_NaN();

@@ -96,8 +96,7 @@ Eigen::VectorXd multisine(int N, const std::vector<std::int64_t>& lines, unsigne
 }  // namespace
 
 TEST_CASE("averaged DFT: bench data A gives the ratio of mean spectra and the errors-in-variables variance to 1e-9") {
-  const auto data =
-      test::shared_table("motorbench_two_mass/multisine_A.csv", {"iq_A", "theta_motor_rad", "theta_load_rad"}, 2500.0);
+  const auto data = test::shared_table("motorbench_two_mass/multisine_A.csv", {"iq_A", "theta_motor_rad", "theta_load_rad"});
   if (!data) return;
   const Estimate e = estimate_of(*data, 2500, 1, band(11, 250));
   CHECK(e.lines.size() == 240);
@@ -107,7 +106,7 @@ TEST_CASE("averaged DFT: bench data A gives the ratio of mean spectra and the er
 
 TEST_CASE("averaged DFT: the project's recording gives the same as ten plain lines to 1e-9, and the plant that made it") {
   const Table data =
-      test::table(BODEFLOW_SOURCE_DIR "/graphs/first_steps/recording.csv", {"current", "speed_motor", "speed_load"}, 0.0);
+      test::table(BODEFLOW_SOURCE_DIR "/graphs/first_steps/recording.csv", {"current", "speed_motor", "speed_load"});
   const Estimate e = estimate_of(data, 400, 2, band(2, 80));
   compare_with_plain(data, 400, 2, e);
 
@@ -131,8 +130,8 @@ TEST_CASE("averaged DFT: the project's recording gives the same as ten plain lin
 }
 
 TEST_CASE("averaged DFT: bench data tells its excited lines from what the drive adds between them") {
-  const auto a = test::shared_table("motorbench_two_mass/multisine_A.csv", {"iq_A", "theta_motor_rad"}, 2500.0);
-  const auto b = test::shared_table("motorbench_two_mass/multisine_B.csv", {"iq_A", "theta_motor_rad", "iq_ref_A"}, 2500.0);
+  const auto a = test::shared_table("motorbench_two_mass/multisine_A.csv", {"iq_A", "theta_motor_rad"});
+  const auto b = test::shared_table("motorbench_two_mass/multisine_B.csv", {"iq_A", "theta_motor_rad", "iq_ref_A"});
   if (!a || !b) return;
   LineChoice choice;
   choice.threshold = 0.3;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <bodeflow/facts.hpp>
+#include <string>
+#include <vector>
+
+#include "estimate.hpp"
+#include "experiment_schedule.hpp"
+
+namespace bodeflow::spectrum {
+
+/// A measurement with averaged periods before it is made.
+struct Planned {
+  Schedule schedule;  ///< with the number of experiments
+  LineChoice choice;
+  Form form = Form::errors_in_variables;
+  bool remove_transient = false;
+};
+
+struct Remark {
+  bool warning = false;
+  std::string text;
+};
+
+/// What can be said of it from what is known of the streams (their notes): time and whole periods; whether the period is that of
+/// the excitation; the excited band beside the Nyquist frequency, the lines asked for and the plant's modes; settling time beside
+/// the skipped periods; crest factor; the standard deviation of G that the noise lets expect, and what four times the periods
+/// would give.
+///
+/// With white noise of standard deviation s on the output, std G = 2 s / (a sqrt(N P)) at a line of peak value a: var Y_p = s^2 /
+/// N, |U| = a / 2; noise s_u on the input adds |G| s_u in quadrature to s. excitation: the reference where there is one, else the
+/// input.
+std::vector<Remark> measurement_advice(const Planned& planned, const StreamFacts& excitation, const StreamFacts& input,
+                                       const StreamFacts& output);
+
+}  // namespace bodeflow::spectrum

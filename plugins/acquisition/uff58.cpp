@@ -138,17 +138,17 @@ Expected<void, TextError> HeaderReader::read() {
   if (!form) return forward(form.error());
   if (auto done = read_form(*form); !done) return done;
   int unused = 0;
-  std::string no_name, no_unit;
+  std::string no_name;
   const auto abscissa = record("its axes (records 8 to 11)");
   if (!abscissa) return forward(abscissa.error());
   read_axis(*abscissa, f_.abscissa_type, no_name, f_.abscissa_unit);
   const auto ordinate = record("its axes (records 8 to 11)");
   if (!ordinate) return forward(ordinate.error());
-  read_axis(*ordinate, unused, f_.ordinate_label, f_.ordinate_unit);
-  for (int i = 0; i < 2; ++i) {
-    const auto axis = record("its axes (records 8 to 11)");
-    if (!axis) return forward(axis.error());
-  }
+  read_axis(*ordinate, f_.ordinate_type, f_.ordinate_label, f_.ordinate_unit);
+  const auto reference = record("its axes (records 8 to 11)");
+  if (!reference) return forward(reference.error());
+  read_axis(*reference, unused, no_name, f_.reference_unit);
+  if (const auto last = record("its axes (records 8 to 11)"); !last) return forward(last.error());
   f_.line = lines_.number() + 1;
   f_.offset = lines_.offset();
   return {};

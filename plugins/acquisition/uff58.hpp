@@ -27,7 +27,9 @@ struct Uff58Function {
   double start = 0.0, step = 0.0;
   int abscissa_type = 0;      ///< 17 time, 18 frequency
   std::string abscissa_unit;  ///< as written, "" for none
+  int ordinate_type = 0;      ///< 8 displacement, 11 velocity, 12 acceleration ...
   std::string ordinate_label, ordinate_unit;
+  std::string reference_unit;  ///< what a response is per: of the denominator
 
   /// Numbers that stand for one point.
   int numbers_per_point() const { return (complex ? 2 : 1) + (even ? 0 : 1); }

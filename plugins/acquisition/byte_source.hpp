@@ -3,6 +3,7 @@
 #include <bodeflow/error.hpp>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ class ByteSource {
   /// The next `read` begins at this byte. Error: the system's reason.
   virtual Expected<void> seek(std::int64_t offset) = 0;
 };
+
+/// Opens the same bytes once more, with a place of their own.
+using OpenSource = std::function<Expected<std::unique_ptr<ByteSource>>()>;
 
 /// The bytes of a file. Error: why it can't be opened; a folder is refused.
 Expected<std::unique_ptr<ByteSource>> open_file(const std::string& path);

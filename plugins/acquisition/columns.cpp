@@ -88,6 +88,9 @@ Expected<std::size_t> find_column(const std::vector<Column>& columns, const std:
     return unexpected("column '" + wanted + "' is ambiguous: " + list_of(headers));
   }
   if (const Leftover* other = find_leftover(leftovers, wanted)) return unexpected("'" + wanted + "' " + other->why);
+  const std::string first_part = wanted + "[1]";
+  if (std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.header == first_part; }))
+    return unexpected("'" + wanted + "' has several columns: " + first_part + ", " + wanted + "[2] ...; say which");
   const Column* nearest = nullptr;
   std::size_t best = wanted.size() / 3;
   for (const Column& c : columns) {

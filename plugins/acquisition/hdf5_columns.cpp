@@ -4,13 +4,12 @@
 #include <bodeflow/utf8.hpp>
 #include <map>
 
+#include "sampling.hpp"
+
 namespace bodeflow::acquisition {
 namespace {
 
 using h5::Handle;
-
-// A data set with more columns than these lies the other way round, or is no table.
-constexpr hsize_t kMostColumns = 4096;
 
 struct Object {
   std::string path;
@@ -105,7 +104,7 @@ Rate Lister::rate_at(hid_t object, const std::string& path) {
     if (value.size() != 1) continue;
     const Rate rate = Rate::from_hz(value.front());
     if (!rate.known())
-      fail("attribute '" + std::string(name) + "' of '" + path + "' is no sampling rate: " + std::to_string(value.front()));
+      fail("attribute '" + std::string(name) + "' of '" + path + "' is no sampling rate: " + number_text(value.front()));
     return rate;
   }
   return {};

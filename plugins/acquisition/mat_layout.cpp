@@ -6,7 +6,6 @@
 namespace bodeflow::acquisition {
 namespace {
 
-// MATLAB, "MAT-File Format" (R2023b), chapter 1: a header of 128 bytes, then elements, each with a type and its length.
 constexpr std::size_t kHeader = 128;
 constexpr std::uint32_t kMatrix = 14, kCompressed = 15;
 
@@ -36,41 +35,81 @@ bool looks_like_v4(const char* bytes) {
   return false;
 }
 
-Expected<MatKind> walk(ByteSource& source, std::uint64_t size, bool big) {
+/// How many bytes there are from `offset` on, at most `size`; without reading them all.
+Expected<std::int64_t> bytes_from(ByteSource& source, std::int64_t offset, std::int64_t size) {
+  const auto there = [&](std::int64_t count) -> Expected<bool> {  // are there so many?
+    if (count == 0) return true;
+    char last = 0;
+    if (auto done = source.seek(offset + count - 1); !done) return {Unexpected<Error>{done.error()}};
+    const auto got = source.read(&last, 1);
+    if (!got) return {Unexpected<Error>{got.error()}};
+    return *got == 1;
+  };
+  std::int64_t least = 0, greatest = size;
+  while (least < greatest) {
+    const std::int64_t count = least == 0 && greatest == size ? size : least + (greatest - least + 1) / 2;
+    const auto held = there(count);
+    if (!held) return {Unexpected<Error>{held.error()}};
+    if (*held) {
+      least = count;
+    } else {
+      greatest = count - 1;
+    }
+  }
+  return least;
+}
+
+Expected<void> list_variables(ByteSource& source, MatLayout& layout) {
   std::array<char, 8> tag{};
-  int variable = 1;
-  for (std::uint64_t at = kHeader; at < size; ++variable) {
-    if (auto done = source.seek(static_cast<std::int64_t>(at)); !done) return {Unexpected<Error>{done.error()}};
+  for (std::int64_t at = kHeader;;) {
+    if (auto done = source.seek(at); !done) return done;
     const auto got = read_up_to(source, tag.data(), tag.size());
     if (!got) return {Unexpected<Error>{got.error()}};
-    const std::string place = "variable " + std::to_string(variable);
+    if (*got == 0) return {};
+    const std::string place = "variable " + std::to_string(layout.variables.size() + 1);
     if (*got < tag.size()) return unexpected("cut off in the header of " + place);
-    const std::uint32_t type = number(tag.data(), big), length = number(tag.data() + 4, big);
+    const std::uint32_t type = number(tag.data(), layout.big_endian);
+    const auto length = static_cast<std::int64_t>(number(tag.data() + 4, layout.big_endian));
     if (type != kMatrix && type != kCompressed)
       return unexpected("damaged: " + place + " begins with an element of type " + std::to_string(type) + ", no array");
-    if (length > size - at - 8) {
-      return unexpected("cut off: " + place + " needs " + std::to_string(length) + " bytes, " + std::to_string(size - at - 8) +
+    const auto held = bytes_from(source, at + 8, length);
+    if (!held) return {Unexpected<Error>{held.error()}};
+    if (*held < length)
+      return unexpected("cut off: " + place + " needs " + std::to_string(length) + " bytes, " + std::to_string(*held) +
                         " follow");
+    if (type == kCompressed) {
+      layout.variables.push_back({at + 8, length, true});
+    } else {
+      layout.variables.push_back({at, length + 8, false});
     }
     at += 8 + length;
   }
-  return MatKind::v5;
 }
 
 }  // namespace
 
-Expected<MatKind> check_mat(ByteSource& source, std::int64_t size) {
+Expected<MatLayout> read_mat_layout(ByteSource& source) {
   std::array<char, kHeader> head{};
   if (auto done = source.seek(0); !done) return {Unexpected<Error>{done.error()}};
   const auto got = read_up_to(source, head.data(), head.size());
   if (!got) return {Unexpected<Error>{got.error()}};
   if (*got == 0) return unexpected("empty file");
   const std::string_view mark(head.data() + 124, 4);
-  if (*got == kHeader && (mark == std::string_view("\0\2IM", 4) || mark == std::string_view("\2\0MI", 4))) return MatKind::v73;
-  if (*got == kHeader && mark == std::string_view("\0\1IM", 4)) return walk(source, static_cast<std::uint64_t>(size), false);
-  if (*got == kHeader && mark == std::string_view("\1\0MI", 4)) return walk(source, static_cast<std::uint64_t>(size), true);
-  if (*got >= 20 && looks_like_v4(head.data())) return unexpected("is a MATLAB v4 file; save it with -v7 or -v7.3");
+  MatLayout layout;
+  layout.big_endian = mark.substr(2) == "MI";
+  const std::string version(layout.big_endian ? mark.substr(0, 2) : std::string{mark[1], mark[0]});
+  if (*got == kHeader && (layout.big_endian || mark.substr(2) == "IM")) {
+    if (version == std::string("\2\0", 2)) {
+      layout.kind = MatKind::v73;
+      return layout;
+    }
+    if (version == std::string("\1\0", 2)) {
+      if (auto done = list_variables(source, layout); !done) return {Unexpected<Error>{done.error()}};
+      return layout;
+    }
+  }
   if (*got < kHeader && std::string_view(head.data(), 6) == "MATLAB") return unexpected("cut off in its header");
+  if (*got >= 20 && looks_like_v4(head.data())) return unexpected("is a MATLAB v4 file; save it with -v7 or -v7.3");
   return unexpected("is not a MATLAB file");
 }
 

@@ -1,13 +1,22 @@
 #pragma once
 
-#include "byte_source.hpp"
+#include <vector>
+
+#include "mat_stream.hpp"
 
 namespace bodeflow::acquisition {
 
 enum class MatKind { v5, v73 };
 
-/// Which kind of MATLAB file this is. Of v5 the variables are walked through, so that what is read later is whole.
-/// `size`: bytes in the file. Error: no MATLAB file, v4, cut off.
-Expected<MatKind> check_mat(ByteSource& source, std::int64_t size);
+/// A MATLAB file's kind, and where its variables stand (v5).
+struct MatLayout {
+  MatKind kind = MatKind::v5;
+  bool big_endian = false;
+  std::vector<MatExtent> variables;
+};
+
+/// Walks through a MATLAB file without reading its values. Its variables are whole, as far as their lengths tell.
+/// Form: MathWorks, "MAT-File Format" (R2023b), chapter 1. Error: no MATLAB file, v4, cut off.
+Expected<MatLayout> read_mat_layout(ByteSource& source);
 
 }  // namespace bodeflow::acquisition

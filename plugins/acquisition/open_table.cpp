@@ -25,6 +25,13 @@ Opened open_universal(const std::string& path) {
   return open_uff([path] { return open_file(path); }, path);
 }
 
+Opened open_matlab(const std::string& path) {
+  const auto hdf5 = is_mat73(path);
+  if (!hdf5) return {Unexpected<Error>{hdf5.error()}};
+  if (*hdf5) return open_hdf5(path);
+  return open_mat([path] { return open_file(path); }, path);
+}
+
 struct Format {
   const char* ending;
   Opened (*open)(const std::string&);
@@ -32,7 +39,7 @@ struct Format {
 
 constexpr std::array kFormats = {
     Format{".csv", open_text},   Format{".txt", open_text},      Format{".tsv", open_text},      Format{".dat", open_text},
-    Format{".h5", open_hdf5},    Format{".hdf5", open_hdf5},     Format{".mat", open_mat},       Format{".wav", open_sound},
+    Format{".h5", open_hdf5},    Format{".hdf5", open_hdf5},     Format{".mat", open_matlab},    Format{".wav", open_sound},
     Format{".flac", open_sound}, Format{".uff", open_universal}, Format{".unv", open_universal},
 };
 

@@ -45,7 +45,7 @@ Expected<void> check_riff(ByteSource& source, std::int64_t size) {
   const auto total = static_cast<std::uint64_t>(size);
   const auto begun = read_exactly(source, head.data(), 12);
   if (!begun) return {Unexpected<Error>{begun.error()}};
-  const std::string_view kind(head.data(), 4);
+  const std::string kind(head.data(), 4);
   if (!*begun || (kind != "RIFF" && kind != "RF64") || std::string_view(head.data() + 8, 4) != "WAVE") return {};
   std::uint64_t long_size = kUnset;
   for (std::uint64_t at = 12; at + 8 <= total;) {
@@ -59,6 +59,12 @@ Expected<void> check_riff(ByteSource& source, std::int64_t size) {
       const auto more = read_exactly(source, head.data(), 16);
       if (!more) return {Unexpected<Error>{more.error()}};
       if (*more) long_size = little(head.data() + 8, 8);
+    }
+    if (id == "fmt ") {
+      const auto more = read_exactly(source, head.data(), 8);
+      if (!more) return {Unexpected<Error>{more.error()}};
+      if (*more && little(head.data() + 2, 2) == 0) return unexpected("the header states 0 channels");
+      if (*more && little(head.data() + 4, 4) == 0) return unexpected("the header states 0 samples per second");
     }
     if (id == "data") {
       if (kind == "RF64" && length == kUnset) length = long_size;

@@ -10,6 +10,9 @@
 
 namespace bodeflow::acquisition {
 
+/// An array with more columns than these lies the other way round, or is no table.
+constexpr std::size_t kMostColumns = 4096;
+
 /// One column of a data file.
 struct Column {
   std::string header;      ///< as written in the file; no two are the same

@@ -1,15 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 
 #include "byte_source.hpp"
 #include "table.hpp"
 
 namespace bodeflow::acquisition {
-
-/// Opens the same bytes once more: each function that is read has a place of its own in the file.
-using OpenSource = std::function<Expected<std::unique_ptr<ByteSource>>()>;
 
 /// A reader of the time functions of a universal file (data set 58 and 58b). Function k is the column "f<k>", named by its
 /// response, such as "12+Z". Its rate is the inverse of the abscissa's increment. Functions over another abscissa than time,

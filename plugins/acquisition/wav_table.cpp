@@ -83,8 +83,6 @@ Expected<void> SoundReader::open() {
     return unexpected(path_ + ": is coded as " + coding_name(info_.format) +
                       ", which loses digits; read are integers of 8 to 32 bits and floating-point numbers");
   }
-  if (info_.samplerate <= 0)
-    return unexpected(path_ + ": the header states " + std::to_string(info_.samplerate) + " samples per second");
   if (info_.seekable == 0) return unexpected(path_ + ": can't be read a second time");
   for (int c = 1; c <= info_.channels; ++c) {
     Column column;

@@ -1,0 +1,134 @@
+#include "report/graph_layout.hpp"
+
+#include <algorithm>
+#include <functional>
+
+namespace bodeflow::tools::report {
+namespace {
+
+constexpr int kSweeps = 8;
+constexpr double kBendHeight = 14.0;
+
+/// Marks the edges that lead back to a box on the current path.
+void mark_backward(std::size_t boxes, std::vector<LayoutEdge>& edges) {
+  std::vector<int> state(boxes, 0);  // 1: on the path, 2: done
+  const std::function<void(int)> visit = [&](int box) {
+    state[static_cast<std::size_t>(box)] = 1;
+    for (auto& edge : edges) {
+      if (edge.from != box) continue;
+      int& next = state[static_cast<std::size_t>(edge.to)];
+      if (next == 1) edge.backward = true;
+      if (next == 0) visit(edge.to);
+    }
+    state[static_cast<std::size_t>(box)] = 2;
+  };
+  for (std::size_t box = 0; box < boxes; ++box)
+    if (state[box] == 0) visit(static_cast<int>(box));
+}
+
+void place_in_layers(GraphLayout& layout, std::size_t boxes) {
+  for (std::size_t round = 0; round < boxes; ++round)
+    for (const auto& edge : layout.edges) {
+      if (edge.backward) continue;
+      int& layer = layout.nodes[static_cast<std::size_t>(edge.to)].layer;
+      layer = std::max(layer, layout.nodes[static_cast<std::size_t>(edge.from)].layer + 1);
+    }
+  // A source stands next to what it feeds
+  for (std::size_t box = 0; box < boxes; ++box) {
+    int nearest = -1;
+    bool fed = false;
+    for (const auto& edge : layout.edges) {
+      if (edge.backward) continue;
+      fed |= edge.to == static_cast<int>(box);
+      const int layer = layout.nodes[static_cast<std::size_t>(edge.to)].layer;
+      if (edge.from == static_cast<int>(box) && (nearest < 0 || layer < nearest)) nearest = layer;
+    }
+    if (!fed && nearest > 0) layout.nodes[box].layer = nearest - 1;
+  }
+  for (const auto& node : layout.nodes) layout.layers = std::max(layout.layers, node.layer + 1);
+}
+
+/// Bends where an edge crosses layers.
+void add_bends(GraphLayout& layout) {
+  for (auto& edge : layout.edges) {
+    edge.by = {edge.from};
+    const int from = layout.nodes[static_cast<std::size_t>(edge.from)].layer,
+              to = layout.nodes[static_cast<std::size_t>(edge.to)].layer;
+    for (int layer = from + 1; !edge.backward && layer < to; ++layer) {
+      edge.by.push_back(static_cast<int>(layout.nodes.size()));
+      layout.nodes.push_back({layer, 0.0, 0.0, kBendHeight});
+    }
+    edge.by.push_back(edge.to);
+  }
+}
+
+/// The mean of `value` over the neighbours of each node, on one side or on both (side 0).
+std::vector<double> neighbour_means(const GraphLayout& layout, int side, double LayoutNode::*value) {
+  std::vector<double> sum(layout.nodes.size(), 0.0), count(layout.nodes.size(), 0.0);
+  for (const auto& edge : layout.edges) {
+    if (edge.backward) continue;
+    for (std::size_t i = 0; i + 1 < edge.by.size(); ++i) {
+      const auto a = static_cast<std::size_t>(edge.by[i]), b = static_cast<std::size_t>(edge.by[i + 1]);
+      if (side <= 0) sum[b] += layout.nodes[a].*value, count[b] += 1.0;
+      if (side >= 0) sum[a] += layout.nodes[b].*value, count[a] += 1.0;
+    }
+  }
+  for (std::size_t n = 0; n < sum.size(); ++n) sum[n] = count[n] > 0.0 ? sum[n] / count[n] : layout.nodes[n].*value;
+  return sum;
+}
+
+std::vector<std::vector<std::size_t>> nodes_by_layer(const GraphLayout& layout) {
+  std::vector<std::vector<std::size_t>> layers(static_cast<std::size_t>(layout.layers));
+  for (std::size_t n = 0; n < layout.nodes.size(); ++n) layers[static_cast<std::size_t>(layout.nodes[n].layer)].push_back(n);
+  for (auto& layer : layers)
+    std::stable_sort(layer.begin(), layer.end(),
+                     [&](std::size_t a, std::size_t b) { return layout.nodes[a].order < layout.nodes[b].order; });
+  return layers;
+}
+
+void order_layers(GraphLayout& layout) {
+  for (std::size_t n = 0; n < layout.nodes.size(); ++n) layout.nodes[n].order = static_cast<double>(n);
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    const auto means = neighbour_means(layout, sweep % 2 == 0 ? -1 : 1, &LayoutNode::order);
+    for (std::size_t n = 0; n < means.size(); ++n) layout.nodes[n].order = means[n];
+    for (const auto& layer : nodes_by_layer(layout))
+      for (std::size_t i = 0; i < layer.size(); ++i) layout.nodes[layer[i]].order = static_cast<double>(i);
+  }
+}
+
+/// Moves the nodes of a layer as near as possible to where they want to be, in their order and without overlap.
+void settle(GraphLayout& layout, const std::vector<std::size_t>& layer, const std::vector<double>& wanted, double gap) {
+  std::vector<double> down(layer.size()), up(layer.size());
+  const auto distance = [&](std::size_t i) {
+    return 0.5 * (layout.nodes[layer[i - 1]].height + layout.nodes[layer[i]].height) + gap;
+  };
+  for (std::size_t i = 0; i < layer.size(); ++i)
+    down[i] = i == 0 ? wanted[layer[0]] : std::max(wanted[layer[i]], down[i - 1] + distance(i));
+  for (std::size_t i = layer.size(); i-- > 0;)
+    up[i] = i + 1 == layer.size() ? wanted[layer[i]] : std::min(wanted[layer[i]], up[i + 1] - distance(i + 1));
+  for (std::size_t i = 0; i < layer.size(); ++i) layout.nodes[layer[i]].y = 0.5 * (down[i] + up[i]);
+}
+
+}  // namespace
+
+GraphLayout layout_graph(std::size_t boxes, std::vector<LayoutEdge> edges, double box_height, double gap) {
+  GraphLayout layout;
+  layout.nodes.assign(boxes, {0, 0.0, 0.0, box_height});
+  layout.edges = std::move(edges);
+  mark_backward(boxes, layout.edges);
+  place_in_layers(layout, boxes);
+  add_bends(layout);
+  order_layers(layout);
+  const auto layers = nodes_by_layer(layout);
+  for (auto& node : layout.nodes) node.y = node.order * (box_height + gap);
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    const auto wanted = neighbour_means(layout, 0, &LayoutNode::y);
+    for (const auto& layer : layers) settle(layout, layer, wanted, gap);
+  }
+  double top = 1e300;
+  for (const auto& node : layout.nodes) top = std::min(top, node.y - 0.5 * node.height);
+  for (auto& node : layout.nodes) node.y -= top;
+  return layout;
+}
+
+}  // namespace bodeflow::tools::report

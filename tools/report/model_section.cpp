@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "report/bode.hpp"
+#include "report/model.hpp"
+#include "report/numbers.hpp"
+#include "report/pole_zero.hpp"
+#include "report/polynomial_text.hpp"
+#include "report/sections.hpp"
+
+namespace bodeflow::tools::report {
+namespace {
+
+constexpr std::size_t kMostRows = 100;
+
+/// nullptr: the record has no list of real parameters.
+const Array* parameters_of(const Record& record) {
+  const Array* parameters = record.array("parameters");
+  return parameters == nullptr || parameters->is_complex() || parameters->shape.size() != 1 ? nullptr : parameters;
+}
+
+void add_parameters(Page& page, const Record& record) {
+  const Array* parameters = parameters_of(record);
+  if (parameters == nullptr) return;
+  const std::size_t count = parameters->size();
+  const Array* covariance = record.array("covariance", {count, count});
+  const auto units = record.texts("parameter_units");
+  Table table{"Parameters", {{"Parameter", false}, {"Value"}, {"std"}, {"Relative std"}}, {}};
+  for (std::size_t n = 0; n < std::min(count, kMostRows); ++n) {
+    const double value = parameters->re[n], deviation = covariance == nullptr ? kNaN : std::sqrt(covariance->re[n * count + n]);
+    const std::string name = record.text_at("parameter_names", n, fmt::format("parameter {}", n + 1));
+    table.rows.push_back({with_unit(name, n < units.size() ? units[n] : parameters->unit), shown(value, 6), shown(deviation, 3),
+                          percent(value == 0.0 ? kNaN : deviation / std::abs(value))});
+  }
+  add_table(page.body(), table);
+  if (count > kMostRows) page.note(fmt::format("{} of {} parameters are shown; all stand in result.json.", kMostRows, count));
+  if (covariance == nullptr)
+    page.note("The model carries no covariance that fits its parameters: how sure they are is not known.");
+}
+
+/// Natural frequency [Hz] and damping ratio of a root.
+std::pair<double, double> frequency_and_damping(std::complex<double> root, bool z_plane, double sample_time) {
+  if (z_plane) root = std::log(root) / sample_time;
+  const double size = std::abs(root);
+  return {size / (2.0 * std::numbers::pi), size > 0.0 ? -root.real() / size : kNaN};
+}
+
+void add_roots(Page& page, const Record& record, bool poles) {
+  const auto roots = roots_of(record, poles);
+  const bool z_plane = is_z_plane(record);
+  const std::string unit = z_plane ? "" : "rad/s";
+  Table table{poles ? "Poles" : "Zeros",
+              {{with_unit("Real part", unit)},
+               {with_unit("Imaginary part", unit)},
+               {"std, real"},
+               {"std, imaginary"},
+               {"Frequency [Hz]"},
+               {"Damping ratio"}},
+              {}};
+  for (std::size_t n = 0; n < std::min(roots.size(), kMostRows); ++n) {
+    const Root& root = roots[n];
+    const auto [frequency, damping] = frequency_and_damping(root.value, z_plane, record.number("sample_time"));
+    table.rows.push_back({shown(root.value.real(), 6), shown(root.value.imag(), 6),
+                          root.has_covariance ? shown(std::sqrt(root.real_variance), 3) : "–",
+                          root.has_covariance ? shown(std::sqrt(root.imaginary_variance), 3) : "–", shown(frequency, 5),
+                          shown(damping, 3)});
+  }
+  add_table(page.body(), table);
+}
+
+/// |G - model| over the radius of the confidence region, line by line.
+Series residual(const Response& response, const Model& model, std::size_t i, std::size_t j) {
+  Series series;
+  series.x = response.frequency;
+  const auto fitted = model.response(response.frequency, i, j);
+  for (std::size_t k = 0; k < response.lines(); ++k) {
+    const double ratio = std::abs(response.value(k, i, j) - fitted[k]) / response.radius(k, i, j);
+    series.y.push_back(std::isfinite(ratio) && ratio > 0.0 ? ratio : kNaN);
+  }
+  return series;
+}
+
+void add_residuals(Page& page, const Response& response, const Model& model) {
+  std::vector<Chart> charts;
+  Table table{"Residuals",
+              {{"Output / input", false},
+               {"Lines outside the region"},
+               {"expected"},
+               {"Median |residual| / radius"},
+               {"Largest |residual| / |G|"}},
+              {}};
+  for (std::size_t i = 0; i < response.outputs; ++i)
+    for (std::size_t j = 0; j < response.inputs && charts.size() < kMostPairs; ++j) {
+      Series series = residual(response, model, i, j);
+      std::size_t known = 0, outside = 0;
+      double largest = kNaN;
+      for (std::size_t k = 0; k < series.y.size(); ++k) {
+        if (!std::isfinite(series.y[k])) continue;
+        ++known;
+        outside += series.y[k] > 1.0 ? 1 : 0;
+        const double relative = series.y[k] * response.radius(k, i, j) / std::abs(response.value(k, i, j));
+        if (std::isfinite(relative) && !(largest >= relative)) largest = relative;
+      }
+      if (known == 0) continue;
+      table.rows.push_back({response.pair_name(i, j), percent(static_cast<double>(outside) / static_cast<double>(known)),
+                            percent(1.0 - response.confidence), shown(median(series.y), 3), percent(largest)});
+      Chart chart;
+      chart.name = fmt::format("{}_residual_{}", model.record->key, charts.size() + 1);
+      chart.title = response.pair_name(i, j);
+      chart.description = "Distance of model and data over the radius of the confidence region; 1 is the region's border.";
+      chart.x_title = "Frequency [Hz]";
+      chart.x_logarithmic = is_logarithmic(response.frequency);
+      series = thinned(series, chart.x_logarithmic);
+      series.markers = series.x.size() <= kMostMarkers;
+      series.line = !series.markers;
+      Panel panel;
+      panel.y = {Scale::logarithmic, 0, 1, {}, {}, "|Residual| / radius"};
+      panel.height = 250.0;
+      panel.series.push_back(std::move(series));
+      panel.levels.push_back({1.0, fmt::format("{} region", percent(response.confidence))});
+      chart.panels.push_back(std::move(panel));
+      charts.push_back(std::move(chart));
+    }
+  if (charts.empty()) return;
+  page.heading("Residuals");
+  page.grid(charts, "Many more lines outside the region than expected: the model lacks something that the data show.");
+  add_table(page.body(), table);
+}
+
+/// The last response of the model's size.
+const Response* response_for(const Model& model, const std::vector<Response>& responses) {
+  for (auto response = responses.rbegin(); response != responses.rend(); ++response)
+    if (response->outputs == model.outputs && response->inputs == model.inputs) return &*response;
+  return nullptr;
+}
+
+void add_polynomials(Page& page, const Record& record) {
+  const Array* numerator = record.array("numerator");
+  const Array* denominator = record.array("denominator");
+  if (numerator == nullptr || denominator == nullptr || numerator->shape.size() != 1 || denominator->shape.size() != 1) return;
+  const std::string variable = record.number("sample_time") > 0.0 ? "z" : "s";
+  page.body().element("p", {{"class", "poly"}}, "Numerator: " + polynomial_text(numerator->re, variable));
+  page.body().element("p", {{"class", "poly"}}, "Denominator: " + polynomial_text(denominator->re, variable));
+}
+
+}  // namespace
+
+bool add_model(Page& page, const Record& record, const std::vector<Response>& responses) {
+  const auto model = read_model(record);
+  const bool roots = !roots_of(record, true).empty() || !roots_of(record, false).empty();
+  if (!model && !roots && parameters_of(record) == nullptr) return false;
+  add_attributes(page, record, {"parameter_names", "parameter_units"});
+  add_parameters(page, record);
+  add_polynomials(page, record);
+  if (const Response* response = model ? response_for(*model, responses) : nullptr; response != nullptr) {
+    page.heading("Model and data");
+    for (const auto& chart : bode_charts(*response, &*model))
+      page.figure(chart, fmt::format("The model over '{}' with the data's {} region", response->record->key,
+                                     percent(response->confidence)));
+    add_residuals(page, *response, *model);
+  }
+  if (const auto wide = draw_pole_zero(record, kWide)) {
+    page.heading("Poles and zeros");
+    page.figure(
+        *wide, *draw_pole_zero(record, kNarrow), record.key + "_poles_zeros",
+        fmt::format(
+            "The axes have scales of their own. Zeros further out than {} times the outermost pole stand in the table only",
+            shown(kFarZero)));
+    add_roots(page, record, true);
+    add_roots(page, record, false);
+  }
+  return true;
+}
+
+}  // namespace bodeflow::tools::report

@@ -1,0 +1,115 @@
+#include "report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "record/files.hpp"
+#include "report/front.hpp"
+#include "report/sections.hpp"
+#include "report/streams.hpp"
+
+namespace bodeflow::tools::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kQuickBytes = 64U << 20U;
+
+std::string kind_of(const std::string& type) {
+  static const std::map<std::string, std::string> kKinds{{"frequency_response", "frequency response"},
+                                                         {"spectral_levels", "levels at all lines"},
+                                                         {"spectral_matrix", "spectral matrix"},
+                                                         {"model", "model"},
+                                                         {"monte_carlo", "Monte Carlo"},
+                                                         {"controller", "controller"},
+                                                         {"trace", "residual trace"},
+                                                         {"sweep", "sweep"},
+                                                         {"delay_estimate", "delay"}};
+  const auto found = kKinds.find(type);
+  return found == kKinds.end() ? type : found->second;
+}
+
+bool add_by_type(Page& page, const Record& record, const std::vector<Response>& responses) {
+  if (record.type == "frequency_response") return add_frequency_response(page, record);
+  if (record.type == "spectral_levels") return add_spectral_levels(page, record);
+  if (record.type == "spectral_matrix") return add_spectral_matrix(page, record);
+  if (record.type == "model") return add_model(page, record, responses);
+  if (record.type == "monte_carlo") return add_monte_carlo(page, record);
+  if (record.type == "controller") return add_controller(page, record);
+  if (record.type == "trace") return add_trace(page, record);
+  if (record.type == "sweep") return add_sweep(page, record);
+  return false;
+}
+
+void add_records(Page& page, const RunData& run) {
+  std::vector<Response> responses;
+  for (const auto& record : run.records) {
+    page.open_section(record.key, kind_of(record.type));
+    for (const auto& warning : record.texts("warnings")) page.note(warning);
+    if (!add_by_type(page, record, responses)) add_any(page, record);
+    if (auto response = read_response(record)) responses.push_back(std::move(*response));
+    page.close_section();
+  }
+  if (run.records.empty()) {
+    page.open_section("Results");
+    page.paragraph("The run left no records: no block of the graph sent one.");
+    page.close_section();
+  }
+}
+
+tl::expected<std::vector<fs::path>, std::string> write_plots(const Page& page, const fs::path& folder) {
+  std::vector<fs::path> written;
+  if (page.plots().empty()) return written;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return tl::unexpected(fmt::format("can't make '{}': {}", folder.string(), error.message()));
+  for (const auto& plot : page.plots()) {
+    const fs::path path = folder / plot.file;
+    if (const auto done = record::write_atomically(path, plot.text); !done) return tl::unexpected(done.error());
+    written.push_back(path);
+  }
+  return written;
+}
+
+}  // namespace
+
+tl::expected<WrittenReport, std::string> write_report(const ReportOptions& options, const Registry& registry) {
+  auto run = read_run(options.directory);
+  if (!run) return tl::unexpected(run.error());
+  Page page;
+  const auto warnings = warnings_of(*run);
+  add_warnings(page, warnings);
+  add_what_was_done(page, *run, registry);
+  add_records(page, *run);
+  add_streams(page, *run, options.progress);
+  add_provenance(page, *run);
+  const Markup header = page_header(*run);
+  const std::string title = run->title.empty() ? run->directory.filename().string() : run->title;
+
+  WrittenReport written;
+  written.page = options.page.empty() ? options.directory / "report.html" : options.page;
+  const fs::path folder =
+      options.page.empty() ? options.directory / "plots" : options.page.parent_path() / (options.page.stem().string() + "_plots");
+  auto plots = write_plots(page, folder);
+  if (!plots) return tl::unexpected(plots.error());
+  if (const auto done = record::write_atomically(written.page, page.html(title + " – bodeflow", header)); !done)
+    return tl::unexpected(done.error());
+  written.plots = std::move(*plots);
+  written.status = run->status;
+  written.records = run->records.size();
+  for (const auto& warning : warnings) written.warnings.push_back(warning.source + ": " + warning.text);
+  written.problems = run->problems;
+  return written;
+}
+
+bool is_quick(const fs::path& directory) {
+  std::uintmax_t bytes = 0;
+  for (const char* name : {"result.json", "data.h5"}) {
+    std::error_code error;
+    if (const auto size = fs::file_size(directory / name, error); !error) bytes += size;
+  }
+  return bytes <= kQuickBytes;
+}
+
+}  // namespace bodeflow::tools::report

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "report/page.hpp"
+#include "report/record.hpp"
+#include "report/response.hpp"
+
+// One function a record type: adds what the record tells to the page. False: the record lacks what its type promises, nothing was
+// added; it is then shown as any record is.
+namespace bodeflow::tools::report {
+
+bool add_frequency_response(Page& page, const Record& record);
+bool add_spectral_levels(Page& page, const Record& record);
+bool add_spectral_matrix(Page& page, const Record& record);
+/// `responses`: all of the run, for the comparison with data.
+bool add_model(Page& page, const Record& record, const std::vector<Response>& responses);
+bool add_monte_carlo(Page& page, const Record& record);
+bool add_controller(Page& page, const Record& record);
+bool add_trace(Page& page, const Record& record);
+bool add_sweep(Page& page, const Record& record);
+
+/// The responses of a sweep's runs over each other, where its records were frequency responses.
+void add_sweep_charts(Page& page, const Record& record, std::size_t runs);
+
+/// Any record: its attributes, its arrays as numbers or as curves.
+void add_any(Page& page, const Record& record);
+
+/// The attributes that have not been shown elsewhere, as facts.
+void add_attributes(Page& page, const Record& record, const std::vector<std::string>& shown_elsewhere);
+
+}  // namespace bodeflow::tools::report

@@ -1,0 +1,77 @@
+#include "report/table.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace bodeflow::tools::report {
+namespace {
+
+std::string csv_title(const std::string& title) {
+  std::string quoted = "\"";
+  for (const char c : title) quoted += c == '"' ? "\"\"" : c == '\n' || c == '\r' ? " " : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+void add_table(Markup& body, const Table& table) {
+  if (table.rows.empty()) return;
+  body.open("div", {{"class", "scroll"}, {"tabindex", "0"}, {"role", "region"}, {"aria-label", table.caption}}).open("table");
+  body.element("caption", table.caption).open("thead").open("tr");
+  for (const auto& column : table.columns)
+    body.element("th", {{"scope", "col"}, {"class", column.number ? "n" : "w"}}, column.title);
+  body.close("tr").close("thead").open("tbody");
+  for (const auto& row : table.rows) {
+    body.open("tr");
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const char* style = i < table.columns.size() && table.columns[i].number ? "n" : "w";
+      if (i == 0)
+        body.element("th", {{"scope", "row"}, {"class", style}}, row[i]);
+      else
+        body.element("td", {{"class", style}}, row[i]);
+    }
+    body.close("tr");
+  }
+  body.close("tbody").close("table").close("div").trusted("\n");
+}
+
+void add_facts(Markup& body, const Facts& facts) {
+  if (facts.empty()) return;
+  body.open("dl");
+  for (const auto& [name, value] : facts) body.open("div").element("dt", name).element("dd", value).close("div");
+  body.close("dl").trusted("\n");
+}
+
+void open_details(Markup& body, const std::string& summary) { body.open("details").element("summary", summary); }
+
+void close_details(Markup& body) { body.close("details").trusted("\n"); }
+
+std::string csv_text(const std::vector<CsvColumn>& columns) {
+  std::string text;
+  for (std::size_t i = 0; i < columns.size(); ++i) text += (i == 0 ? "" : ",") + csv_title(columns[i].title);
+  text += '\n';
+  for (std::size_t k = 0; !columns.empty() && k < columns[0].values.size(); ++k) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (i > 0) text += ',';
+      if (std::isfinite(columns[i].values[k])) text += fmt::format("{:.9g}", columns[i].values[k]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string data_address(const std::string& media_type, const std::string& text) {
+  std::string address = "data:" + media_type + ";charset=utf-8,";
+  for (const char c : text) {
+    const bool plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == ',' || c == '.' || c == '-';
+    if (plain)
+      address += c;
+    else
+      address += fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+  }
+  return address;
+}
+
+}  // namespace bodeflow::tools::report

@@ -48,7 +48,7 @@ void SteppedSine::describe(Describe& d) {
       "stream "
       "ends after the last one. At the sample where a frequency begins, a record frequency_step tells what is on.");
   d.reference(
-      "D. A. Jue, Frequency domain system identification with a rational, multi-band, curve-fitting approach, section 3.2");
+      "D. A. Jue, Frequency domain system identification with a rational, multi-band, curve-fitting approach, 1998, section 3.2");
   describe_source(d);
   d.optional<std::vector<double>>("frequencies").unit("Hz").above(0.0).doc("one by one, in the order in which they come");
   d.optional<double>("grid.first").unit("Hz").above(0.0).doc("first frequency of a grid, in place of a list; may be the highest");

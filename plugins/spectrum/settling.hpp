@@ -20,10 +20,11 @@ struct Correlation {
 /// empty where y is shorter than the window. Requires 1 <= cycles < window / 2. Noise of standard deviation sigma in y gives a
 /// and b the standard deviation sigma sqrt(2 / window).
 ///
-/// Source: J. Jue, section 3.2, equation (9), with two corrections: the sum has N terms (N + 1 are printed), and the
-/// argument is omega k Ts. An offset falls out exactly; harmonics do, too, below the Nyquist frequency.
-/// For an input u[n] = sin(theta n) the response is G = B + jA, for u[n] = cos(theta n) it is G = A - jB.
-/// Cost: O(samples). The running sums are replaced by fresh ones each window, so rounding does not add up.
+/// Source: D. A. Jue, Frequency domain system identification with a rational, multi-band, curve-fitting approach, 1998, equation
+/// (9), with two corrections: the sum has N terms (N + 1 are printed), and the argument is omega k Ts. An offset falls out
+/// exactly; harmonics do, too, below the Nyquist frequency. For an input u[n] = sin(theta n) the response is G = B + jA, for u[n]
+/// = cos(theta n) it is G = A - jB. Cost: O(samples). The running sums are replaced by fresh ones each window, so rounding does
+/// not add up.
 Correlation sliding_correlation(std::span<const double> y, std::int64_t window, std::int64_t cycles);
 
 /// delta[p] = max a[q] - min a[q] over q >= p: what the coefficient still moves from p on. Never rises; the last is 0.

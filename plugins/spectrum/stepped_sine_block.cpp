@@ -50,7 +50,7 @@ void SteppedSineBlock::describe(Describe& d) {
       "transient that moves less than the threshold in that time passes for settled: set settled_time to several time "
       "constants.");
   d.reference(
-      "D. A. Jue, Frequency domain system identification with a rational, multi-band, curve-fitting approach, section 3.2");
+      "D. A. Jue, Frequency domain system identification with a rational, multi-band, curve-fitting approach, 1998, section 3.2");
   d.reference(
       "R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., 2012, chapter 2, "
       "doi:10.1002/9781118287422");

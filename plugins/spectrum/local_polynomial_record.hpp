@@ -1,0 +1,29 @@
+#pragma once
+
+#include <bodeflow/record.hpp>
+#include <string>
+#include <vector>
+
+#include "local_polynomial.hpp"
+#include "signals.hpp"
+
+namespace bodeflow::spectrum {
+
+/// What a local polynomial estimate was made from.
+struct LocalPolynomialOrigin {
+  LocalPolynomial settings;
+  Signals references, inputs, outputs;  ///< no references: known input
+  double sample_rate_hz = 1.0;
+  std::int64_t samples = 0;
+  std::int64_t step = 1;              ///< from line to line of the estimate
+  std::vector<std::string> warnings;  ///< about the signals
+};
+
+/// What spoils the estimate, each with what to do: lines without excitation, resonances narrower than a fit, an input that stands
+/// little above its noise.
+std::vector<std::string> local_polynomial_warnings(const LocalPolynomialEstimate& estimate, const LocalPolynomialOrigin& from);
+
+/// The record `frequency_response` of the estimate, with noise and transient levels.
+RecordBuilder local_polynomial_record(const LocalPolynomialEstimate& estimate, const LocalPolynomialOrigin& from);
+
+}  // namespace bodeflow::spectrum

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <bodeflow/record.hpp>
+#include <string>
+#include <vector>
+
+#include "signals.hpp"
+#include "welch.hpp"
+
+namespace bodeflow::spectrum {
+
+/// What a Welch estimate was made from.
+struct WelchOrigin {
+  WelchSettings settings;
+  WelchForm form = WelchForm::h1;
+  Signals inputs, outputs;
+  std::vector<std::string> warnings;  ///< about the signals
+};
+
+/// "h1", "h2", "hv".
+std::string name_of(WelchForm form);
+
+/// Linewidth of the estimate in Hz: the equivalent noise bandwidth of the window.
+double resolution_hz(const WelchSettings& settings);
+
+/// What spoils the estimate, each with what to do: few averages, low coherence, resonances narrower than the resolution shows.
+std::vector<std::string> welch_warnings(const WelchEstimate& estimate, const WelchOrigin& from);
+
+/// The record `frequency_response` of the estimate, with coherence and densities.
+RecordBuilder welch_record(const WelchEstimate& estimate, const WelchOrigin& from);
+
+}  // namespace bodeflow::spectrum

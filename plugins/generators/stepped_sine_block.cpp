@@ -133,13 +133,26 @@ void SteppedSine::resolve(Facts& f) {
   f.out(out) = facts;
 }
 
-void SteppedSine::activate(const Activation&) {
+/// What the frequencies are, in a sentence.
+std::string SteppedSine::summary() const {
   double farthest = 0.0;
   for (const FrequencyStep& s : steps_) farthest = std::max(farthest, std::abs(s.frequency_hz(rate_) / s.wanted_hz - 1.0));
   char moved[20];
   std::snprintf(moved, sizeof moved, "%.2g %%", 100.0 * farthest);
-  log_info(std::to_string(steps_.size()) + " frequencies from " + hertz(steps_.front().frequency_hz(rate_)) + " to " +
-           hertz(steps_.back().frequency_hz(rate_)) + ", moved by at most " + moved + " to fit the samples");
+  return std::to_string(steps_.size()) + (steps_.size() == 1 ? " frequency from " : " frequencies from ") +
+         hertz(steps_.front().frequency_hz(rate_)) + " to " + hertz(steps_.back().frequency_hz(rate_)) + ", moved by at most " +
+         moved + " to fit the samples";
+}
+
+void SteppedSine::advise(const Facts&, Advice& a) {
+  char time[40] = "";
+  if (longest_length() >= 0)
+    std::snprintf(time, sizeof time, "; at most %.4g s in all", static_cast<double>(longest_length()) / rate_.hz());
+  a.tell(summary() + time);
+}
+
+void SteppedSine::activate(const Activation&) {
+  log_info(summary());
   reset();
 }
 

@@ -19,6 +19,7 @@ class SteppedSine final : public Block {
   static void describe(Describe& d);
   void configure(const Parameters& p) override;
   void resolve(Facts& f) override;
+  void advise(const Facts& f, Advice& a) override;
   void activate(const Activation& a) override;
   void process(Io& io) override;
   void receive(int port, const RecordView& record, Io& io) override;
@@ -26,6 +27,7 @@ class SteppedSine final : public Block {
 
  private:
   void configure_steps(const Parameters& p);
+  std::string summary() const;
   std::int64_t longest_length() const;
   std::int64_t dwell_samples(const FrequencyStep& frequency) const;
   void begin_next(Io& io, std::uint64_t offset);

@@ -10,6 +10,7 @@ namespace bodeflow::spectrum {
 namespace {
 
 constexpr double kSmallRatio = 10.0;  // 10 dB in power
+constexpr std::int64_t kFewWindows = 4;
 constexpr std::size_t kNamed = 5;
 
 /// "2 of 60 frequencies (12 Hz, 15 Hz)", or "" where no line is meant.
@@ -63,6 +64,10 @@ std::vector<std::string> stepped_warnings(const std::vector<SteppedLine>& lines,
         found +
         " had not settled when their time was over, and are biased by the transient: raise max_time (or the generator's dwell)");
   }
+  const auto few = [](const SteppedLine& l) { return l.response.windows < kFewWindows; };
+  if (const auto found = those(lines, few); !found.empty())
+    warnings.push_back("fewer than " + std::to_string(kFewWindows) + " windows at " + found +
+                       " give a variance that is itself uncertain: raise windows");
   const auto weak_input = [](const SteppedLine& l) {
     return std::norm(l.response.input_mean) < kSmallRatio * l.response.input_variance;
   };

@@ -29,8 +29,8 @@ struct SteppedMeasurement {
   std::int64_t planned = 0;  ///< frequencies that the generator announced
 };
 
-/// What spoils these lines, and what to do about it: answers that never settled; an input, an output within 10 dB of its own
-/// noise; frequencies that are missing at the end.
+/// What spoils these lines, and what to do about it: answers that never settled; fewer than 4 windows; an input, an output within
+/// 10 dB of its own noise; frequencies that are missing at the end.
 std::vector<std::string> stepped_warnings(const std::vector<SteppedLine>& lines, const SteppedMeasurement& from);
 
 /// The record `frequency_response` of form stepped_sine, lines in rising order; README.md lists its arrays. `degrees_of_freedom`

@@ -156,3 +156,12 @@ TEST_CASE("stepped sine: parameters that do not fit each other are refused") {
   CHECK(refusal([](Driver& b) { b.set("frequencies", std::vector<double>{600.0}); }) ==
         "frequency 600 Hz; allowed: above 0 and below half of the sample rate, 500 Hz");
 }
+
+TEST_CASE("stepped sine: how far the frequencies are moved and the longest time are told before the run") {
+  Driver block;
+  block.set("sample_rate", 1000.0).set("frequencies", std::vector<double>{300.3, 50.0}).set("tolerance", 0.01).set("dwell", 0.1);
+  block.configure();
+  CHECK(block.advise({}) ==
+        std::vector<std::string>{
+            "2 frequencies from 300 Hz to 50 Hz, moved by at most 0.1 % to fit the samples; at most 0.2 s in all"});
+}

@@ -184,7 +184,8 @@ TEST_CASE("stepped sine: a plant that never settles is left after max_time, with
   CHECK(r.array("settled")->as<std::int64_t>()[0] == 0);
   CHECK(r.array("dwell")->as<double>()[0] == 0.4);
   CHECK(r.array("windows")->as<std::int64_t>()[0] == 4);
-  CHECK(warnings(block).at(0) ==
+  REQUIRE(warnings(block).size() == 1);
+  CHECK(warnings(block)[0] ==
         "2 of 2 frequencies (50 Hz, 120 Hz) had not settled when their time was over, and are biased by the transient: raise "
         "max_time (or the generator's dwell)");
 }
@@ -217,6 +218,16 @@ TEST_CASE("stepped sine: small signals and missing frequencies are warned of") {
   CHECK(warnings(block) == std::vector<std::string>{"output 'output_1' stands less than 10 dB above its noise at 1 of 1 "
                                                     "frequency (50 Hz): raise the amplitude or the windows",
                                                     "1 of 2 frequencies were measured before the run ended: raise its duration"});
+}
+
+TEST_CASE("stepped sine: two and three windows are enough for a variance, with a warning") {
+  Driver block;
+  block.set("windows", std::int64_t{2}).set("settled_time", 0.06);  // 3 of 20 ms, 3 of 25 ms
+  measure(block, signals());
+  CHECK(RecordView(*block.records().back()).number("degrees_of_freedom") == 2.0);
+  CHECK(warnings(block) ==
+        std::vector<std::string>{"fewer than 4 windows at 2 of 2 frequencies (50 Hz, 120 Hz) give a variance that is "
+                                 "itself uncertain: raise windows"});
 }
 
 TEST_CASE("stepped sine: streams at another rate than the generator's have windows of their own") {

@@ -1,135 +1,266 @@
 #include "multisine_block.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
+#include "crest_optimiser.hpp"
+#include "fourier_sum.hpp"
+#include "multisine_parameters.hpp"
 #include "source.hpp"
 
 namespace bodeflow::generators {
+namespace {
+
+// Steps of the Fourier sums of all signals, about ten seconds.
+constexpr double kMostSteps = 4e9;
+// Points computed by the optimiser for all signals, about twenty seconds.
+constexpr double kMostOptimiserPoints = 4e8;
+// Values kept in memory: 1 GiB.
+constexpr double kMostValues = 134217728;
+// Signals up to this size are computed while a graph is checked.
+constexpr double kQuickValues = 1 << 20;
+// Lines that are told to other blocks, at most.
+constexpr std::size_t kMostNotedLines = 100000;
+
+Phases phases_named(const std::string& name) {
+  if (name == "random") return Phases::random;
+  if (name == "zero") return Phases::zero;
+  return name == "optimised" ? Phases::optimised : Phases::schroeder;
+}
+
+bool quick_size(std::int64_t size) {
+  for (const int factor : {2, 3, 5}) {
+    while (size % factor == 0) size /= factor;
+  }
+  return size == 1;
+}
+
+std::string near_sizes(std::int64_t size) {
+  std::int64_t below = size, above = size;
+  while (!quick_size(below)) --below;
+  while (!quick_size(above)) ++above;
+  return std::to_string(below) + " or " + std::to_string(above);
+}
+
+}  // namespace
 
 void Multisine::describe(Describe& d) {
   d.id("generators.multisine")
-      .summary("Gives a periodic sum of cosines on chosen spectral lines.")
+      .summary("Gives periodic sums of cosines on chosen spectral lines, for one input or several.")
       .role("source")
       .realtime_safe()
-      .cost_ns(0.2);
+      .cost_ns(0.5);
   d.doc(
       "x[n] = sum_i a_i cos(2 pi k_i n / N + phi_i), line k at k sample_rate / N. One period is computed to rounding when the "
-      "run begins, then played "
-      "back. Schroeder phases phi_i = -i (i - 1) pi / M give a crest factor near 1.7 for equal amplitudes on evenly spaced "
-      "lines; random phases "
-      "give a new realisation with each seed, with a crest factor near 3. The crest factor reached is in the log.");
+      "run begins, "
+      "then played back. Schroeder phases give a crest factor near 1.7 for flat spectra on evenly spaced lines; optimised ones "
+      "1.4 from the first "
+      "line on and 1.6 in a narrow band, between the samples as well; random ones a new realisation with each seed, near 3. With "
+      "`inputs: n` there are n "
+      "channels and n experiments of experiment_periods periods each, in which the channels' spectra are multiplied by an "
+      "orthogonal matrix; "
+      "`realisations` repeats them with new random phases, and then the stream ends. The crest factor reached is in the log.");
   d.reference(
       "M. R. Schroeder, Synthesis of low-peak-factor signals and binary sequences with low autocorrelation, 1970, "
       "doi:10.1109/TIT.1970.1054411");
-  d.reference("R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., 2012, chapter 5");
+  d.reference("R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., 2012, chapters 4 and 5");
+  d.reference(
+      "P. Guillaume, J. Schoukens, R. Pintelon, I. Kollar, Crest-factor minimization using nonlinear Chebyshev approximation "
+      "methods, "
+      "1991, doi:10.1109/19.119778");
+  d.reference(
+      "T. P. Dobrowiecki, J. Schoukens, P. Guillaume, Optimized excitation signals for MIMO frequency response function "
+      "measurements, "
+      "2006, doi:10.1109/TIM.2006.880305");
   describe_source(d);
   d.required<std::int64_t>("period").range(4, 1 << 28).doc("samples of a period, N; factors of 2, 3 and 5 are prepared fastest");
-  d.optional<std::int64_t>("lines.first").range(1, 1 << 28).doc("first excited line");
-  d.optional<std::int64_t>("lines.last").range(1, 1 << 28).doc("last line that may be excited, below N / 2");
-  d.parameter("lines.step", std::int64_t{1})
-      .range(1, 1 << 28)
-      .doc("distance of excited lines: 2 with an odd first line excites odd lines only");
-  d.optional<std::vector<std::int64_t>>("lines.list")
-      .range(1, 1 << 28)
-      .doc("excited lines one by one, ascending, in place of first, last and step");
+  describe_lines(d);
   d.parameter("amplitude", std::vector<double>{1.0})
       .unit("")
-      .doc("peak value of each line's cosine: one value for all lines, or one a line");
-  d.parameter("phases", "schroeder").choices({"schroeder", "random", "zero"}).doc("of the lines; see above");
+      .doc("peak value of each line's cosine: one value for all lines, or one a line named (detection lines counted)");
+  d.optional<std::vector<double>>("spectrum.frequencies")
+      .unit("Hz")
+      .doc("in place of amplitude: points of a curve over frequency, rising");
+  d.optional<std::vector<double>>("spectrum.amplitudes")
+      .unit("")
+      .doc("peak values at these points; between them straight in a doubly logarithmic plot");
+  d.optional<std::vector<double>>("rms").unit("").doc(
+      "scales the signal to this root mean square: one value, or one a channel; then only the shape of the amplitudes counts");
+  d.optional<std::vector<double>>("peak").unit("").doc(
+      "scales the signal to this largest value over all experiments: one value, or one a channel");
+  d.parameter("phases", "schroeder").choices({"schroeder", "random", "zero", "optimised"}).doc("of the lines; see above");
   d.optional<std::int64_t>("periods").range(1, 1e12).doc(
       "the stream ends after as many periods; without it, it has no end of its own");
+  d.parameter("inputs", std::int64_t{1}).range(1, 64).doc("channels, and experiments of each realisation");
+  d.optional<std::int64_t>("experiment_periods")
+      .range(1, 1e9)
+      .doc("periods of each experiment, those with its transient counted");
+  d.parameter("realisations", std::int64_t{1}).range(1, 10000).doc("repetitions of the experiments with new random phases");
   d.optional<std::int64_t>("seed").range(0, 9e18).doc("fixes random phases; without it the run's seed and the block's name do");
-  d.stream_out(out).doc("one channel");
+  d.stream_out(out);
 }
 
 void Multisine::configure(const Parameters& p) {
   rate_ = source_rate(p);
   unit_ = p.text("unit");
-  period_length_ = p.integer("period");
-  if (p.has("periods")) length_ = period_length_ * p.integer("periods");
-  random_phases_ = p.text("phases") == "random";
+  design_ = Design();
+  design_.period = whole(p, "period", 4, 1 << 28);
+  design_.phases = phases_named(p.text("phases"));
   own_seed_ = p.has("seed");
-  if (own_seed_) seed_ = static_cast<std::uint64_t>(p.integer("seed"));
-
-  const std::vector<std::int64_t> lines = lines_of(p);
-  const std::vector<double>& amplitudes = p.numbers("amplitude");
-  if (amplitudes.size() != 1 && amplitudes.size() != lines.size()) {
-    fail("amplitude has " + std::to_string(amplitudes.size()) + " values, allowed: 1, or one for each of the " +
-         std::to_string(lines.size()) + " lines");
-  }
-  lines_.clear();
-  const std::vector<double> phases =
-      p.text("phases") == "schroeder" ? schroeder_phases(lines.size()) : std::vector<double>(lines.size());
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    lines_.push_back({lines[i], amplitudes[amplitudes.size() == 1 ? 0 : i], phases[i]});
+  seed_ = own_seed_ ? static_cast<std::uint64_t>(p.integer("seed")) : 0;
+  signals_.reset();
+  take_lines(p);
+  take_experiments(p);
+  take_levels(p);
+  require_preparable();
 }
 
-void Multisine::resolve(Facts& f) { f.out(out) = source_facts(rate_, unit_, 1, length_); }
+void Multisine::take_lines(const Parameters& p) {
+  const LineNumbers named = named_lines(p, design_.period);
+  const LineNumbers excited = excited_lines(p, named);
+  const std::vector<double> amplitudes = named_amplitudes(p, named, rate_.hz() / static_cast<double>(design_.period));
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    if (std::binary_search(excited.begin(), excited.end(), named[i])) design_.lines.push_back({named[i], amplitudes[i], 0.0});
+  }
+  if (std::all_of(design_.lines.begin(), design_.lines.end(), [](const Line& line) { return line.amplitude == 0; }))
+    fail("all amplitudes are zero");
+}
+
+void Multisine::take_experiments(const Parameters& p) {
+  design_.inputs = static_cast<std::size_t>(whole(p, "inputs", 1, 64));
+  design_.realisations = static_cast<std::size_t>(whole(p, "realisations", 1, 10000));
+  const bool several = design_.inputs > 1 || design_.realisations > 1;
+  experiment_periods_ = p.has("experiment_periods") ? whole(p, "experiment_periods", 1, 1'000'000'000) : -1;
+  if (several && experiment_periods_ < 0)
+    fail("inputs and realisations need experiment_periods, the number of periods of each experiment");
+  if (experiment_periods_ > 0 && p.has("periods")) {
+    fail("periods is given as well as experiment_periods; the stream ends after realisations x inputs x experiment_periods");
+  }
+  if (design_.realisations > 1 && (design_.phases == Phases::schroeder || design_.phases == Phases::zero))
+    fail("phases are " + p.text("phases") + ", the same in all realisations; allowed: random, optimised");
+  std::int64_t periods = p.has("periods") ? p.integer("periods") : -1;
+  if (experiment_periods_ > 0) periods = experiment_periods_ * p.integer("inputs") * p.integer("realisations");
+  length_ = -1;
+  if (periods < 0) return;
+  if (periods > INT64_MAX / design_.period) fail(std::to_string(periods) + " periods have more samples than can be counted");
+  length_ = periods * design_.period;
+}
+
+void Multisine::take_levels(const Parameters& p) {
+  if (p.has("rms") && p.has("peak")) fail("rms is given as well as peak; allowed: one of the two");
+  for (const char* name : {"rms", "peak"}) {
+    if (!p.has(name)) continue;
+    std::vector<double> levels = p.numbers(name);
+    if (levels.size() == 1) levels.resize(design_.inputs, levels[0]);
+    if (levels.size() != design_.inputs) {
+      fail(std::string(name) + " has " + std::to_string(levels.size()) + " values, allowed: 1, or one for each of the " +
+           std::to_string(design_.inputs) + " inputs");
+    }
+    if (std::any_of(levels.begin(), levels.end(), [](double level) { return !(level > 0); }))
+      fail(std::string(name) + " is not above zero");
+    (*name == 'r' ? design_.rms : design_.peak) = levels;
+  }
+}
+
+void Multisine::require_preparable() const {
+  const auto steps = static_cast<double>(FourierSum::sum_of_factors(design_.period));
+  const double samples = static_cast<double>(design_.period) * static_cast<double>(design_.inputs * design_.realisations);
+  if (steps * samples > kMostSteps && !quick_size(design_.period)) {
+    fail("a period of " + std::to_string(design_.period) +
+         " samples has large prime factors and takes too long to prepare; near it: " + near_sizes(design_.period));
+  }
+  if (steps * samples > kMostSteps || Experiments::values(design_) > kMostValues) {
+    fail(std::to_string(design_.inputs * design_.realisations) + " signals of " + std::to_string(design_.period) +
+         " samples take too much time or memory to prepare; shorten the period or run the realisations one by one");
+  }
+  const double points =
+      static_cast<double>(descent_points(design_.lines)) * static_cast<double>(design_.inputs * design_.realisations);
+  if (design_.phases == Phases::optimised && points > kMostOptimiserPoints) {
+    fail("optimised phases of " + std::to_string(design_.inputs * design_.realisations) + " signals with lines up to " +
+         std::to_string(design_.lines.back().k) + " take too long; allowed: random, schroeder, or fewer and lower lines");
+  }
+}
+
+void Multisine::resolve(Facts& f) {
+  StreamFacts& facts = f.out(out);
+  facts = source_facts(rate_, unit_, static_cast<int>(design_.inputs), length_);
+  note_signal(facts);
+}
+
+void Multisine::note_signal(StreamFacts& facts) {
+  const double period_s = static_cast<double>(design_.period) / rate_.hz();
+  facts.notes["excitation.period"] = {period_s};
+  const bool many = design_.lines.size() > kMostNotedLines;
+  if (!many) {
+    std::vector<double>& frequencies = facts.notes["excitation.frequencies"];
+    for (const Line& line : design_.lines) frequencies.push_back(static_cast<double>(line.k) / period_s);
+  }
+  // Other signals wait for the run's seed, or would make a check slow.
+  const bool quick = Experiments::values(design_) <= kQuickValues && design_.phases != Phases::optimised &&
+                     (own_seed_ || !Experiments::seeded(design_));
+  if (quick) {
+    prepare(seed_);
+    facts.notes["excitation.crest_factor"] = {signals_->crest_factor()};
+  }
+  double power = 0;
+  for (const Line& line : design_.lines) power += 0.5 * line.amplitude * line.amplitude;
+  std::vector<double> scales(design_.inputs, 1.0);
+  if (quick) scales = signals_->scales();
+  if (!design_.rms.empty()) {
+    for (std::size_t j = 0; j < scales.size(); ++j) scales[j] = design_.rms[j] / std::sqrt(power);
+  }
+  const bool known = quick || design_.peak.empty();
+  const bool equal = std::all_of(scales.begin(), scales.end(), [&scales](double scale) { return scale == scales[0]; });
+  if (many || !known || !equal) return;
+  std::vector<double>& amplitudes = facts.notes["excitation.amplitudes"];
+  for (const Line& line : design_.lines) amplitudes.push_back(std::abs(line.amplitude) * scales[0]);
+}
+
+void Multisine::prepare(std::uint64_t seed) {
+  if (signals_ && (signals_seed_ == seed || !Experiments::seeded(design_))) return;
+  signals_ = std::make_unique<Experiments>(design_, seed);
+  signals_seed_ = seed;
+}
 
 void Multisine::activate(const Activation& a) {
-  if (random_phases_) {
-    const std::vector<double> phases = random_phases(lines_.size(), numerics::Random(own_seed_ ? seed_ : a.seed));
-    for (std::size_t i = 0; i < lines_.size(); ++i) lines_[i].phase_rad = phases[i];
-  }
-  period_ = synthesise(period_length_, lines_);
-  char text[100];
-  std::snprintf(text, sizeof text, "%zu lines from %s to %s, crest factor %.2f", lines_.size(),
-                hertz(static_cast<double>(lines_.front().k) * rate_.hz() / static_cast<double>(period_length_)).c_str(),
-                hertz(static_cast<double>(lines_.back().k) * rate_.hz() / static_cast<double>(period_length_)).c_str(),
-                crest_factor(period_));
-  log_info(text);
+  prepare(own_seed_ ? seed_ : a.seed);
+  log_info(summary());
+}
+
+std::string Multisine::summary() const {
+  const double line_distance_hz = rate_.hz() / static_cast<double>(design_.period);
+  char text[120];
+  std::snprintf(text, sizeof text, "%zu lines from %s to %s, crest factor %.2f", design_.lines.size(),
+                hertz(static_cast<double>(design_.lines.front().k) * line_distance_hz).c_str(),
+                hertz(static_cast<double>(design_.lines.back().k) * line_distance_hz).c_str(), signals_->crest_factor());
+  std::string result = text;
+  if (design_.inputs > 1) result += ", " + std::to_string(design_.inputs) + " orthogonal experiments";
+  if (design_.realisations > 1) result += ", " + std::to_string(design_.realisations) + " realisations";
+  return result;
 }
 
 void Multisine::process(Io& io) {
-  const auto y = io.write(out);
-  std::size_t wanted = y.size();
+  const std::uint64_t begin = io.position();
+  std::uint64_t wanted = io.count();
   if (length_ >= 0) {
     const auto length = static_cast<std::uint64_t>(length_);
-    const std::uint64_t left = length > io.position() ? length - io.position() : 0;
-    if (left < wanted) {
-      wanted = static_cast<std::size_t>(left);
-      io.end_after(left);
-      std::fill(y.begin() + static_cast<std::ptrdiff_t>(wanted), y.end(), 0.0);
+    wanted = std::min(wanted, length > begin ? length - begin : 0);
+    if (wanted < io.count()) io.end_after(wanted);
+  }
+  const auto period = static_cast<std::uint64_t>(design_.period);
+  for (std::size_t j = 0; j < design_.inputs; ++j) {
+    const auto y = io.write(out, static_cast<int>(j));
+    for (std::uint64_t done = 0; done < wanted;) {
+      const std::uint64_t number = (begin + done) / period, at = (begin + done) % period;
+      const std::uint64_t part = std::min(wanted - done, period - at);
+      const std::uint64_t experiment = experiment_periods_ > 0 ? number / static_cast<std::uint64_t>(experiment_periods_) : 0;
+      signals_->copy(static_cast<std::size_t>(experiment / design_.inputs), static_cast<std::size_t>(experiment % design_.inputs),
+                     j, static_cast<std::size_t>(at), y.subspan(static_cast<std::size_t>(done), static_cast<std::size_t>(part)));
+      done += part;
     }
+    std::fill(y.begin() + static_cast<std::ptrdiff_t>(wanted), y.end(), 0.0);
   }
-  std::size_t at = static_cast<std::size_t>(io.position() % period_.size());
-  for (std::size_t done = 0; done < wanted;) {
-    const std::size_t part = std::min(wanted - done, period_.size() - at);
-    std::copy_n(period_.begin() + static_cast<std::ptrdiff_t>(at), part, y.begin() + static_cast<std::ptrdiff_t>(done));
-    done += part;
-    at = 0;
-  }
-}
-
-std::vector<std::int64_t> Multisine::lines_of(const Parameters& p) const {
-  const bool range = p.has("lines.first") || p.has("lines.last") || p.given("lines.step");
-  if (p.has("lines.list")) {
-    if (range) fail("lines has a list as well as first, last or step; allowed: one of the two");
-    const std::vector<std::int64_t> lines = p.integers("lines.list");
-    if (lines.empty()) fail("lines.list is empty");
-    if (std::adjacent_find(lines.begin(), lines.end(), std::greater_equal<>()) != lines.end())
-      fail("lines.list is not ascending");
-    require_within(lines.front());
-    require_within(lines.back());
-    return lines;
-  }
-  if (!p.has("lines.first") || !p.has("lines.last")) fail("lines needs first and last, or a list");
-  const std::int64_t first = p.integer("lines.first"), last = p.integer("lines.last"), step = p.integer("lines.step");
-  if (last < first) fail("lines.last " + std::to_string(last) + " is below lines.first " + std::to_string(first));
-  if (step < 1) fail("lines.step is " + std::to_string(step) + ", allowed: at least 1");
-  require_within(first);
-  require_within(last);
-  std::vector<std::int64_t> lines;
-  for (std::int64_t k = first; k <= last; k += step > last - k ? last - k + 1 : step) lines.push_back(k);
-  return lines;
-}
-
-void Multisine::require_within(std::int64_t line) const {
-  const std::int64_t highest = (period_length_ - 1) / 2;
-  if (line >= 1 && line <= highest) return;
-  fail("line " + std::to_string(line) + " does not lie between zero and half of the period of " + std::to_string(period_length_) +
-       " samples; allowed: 1 to " + std::to_string(highest));
 }
 
 }  // namespace bodeflow::generators

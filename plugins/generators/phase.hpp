@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bodeflow/rate.hpp>
+#include <complex>
 #include <cstdint>
 
 namespace bodeflow::generators {
@@ -45,6 +46,11 @@ inline double sine_of_cycles(double cycles) {
   double sum = kSeries[10];
   for (int k = 10; k-- > 0;) sum = sum * square + kSeries[k];
   return x * sum;
+}
+
+/// exp(2 pi i cycles) for |cycles| <= 0.5, each part as good as `sine_of_cycles`.
+inline std::complex<double> turn_of_cycles(double cycles) {
+  return {sine_of_cycles(cycles > 0.25 ? cycles - 0.75 : cycles + 0.25), sine_of_cycles(cycles)};
 }
 
 }  // namespace bodeflow::generators

@@ -24,4 +24,13 @@ StreamFacts source_facts(Rate rate, const std::string& unit, int channels, std::
   return facts;
 }
 
+std::int64_t whole(const Parameters& p, const char* name, std::int64_t lowest, std::int64_t highest) {
+  const std::int64_t value = p.integer(name);
+  if (value < lowest || value > highest) {
+    fail(std::string(name) + " is " + std::to_string(value) + ", allowed: " + std::to_string(lowest) + " to " +
+         std::to_string(highest));
+  }
+  return value;
+}
+
 }  // namespace bodeflow::generators

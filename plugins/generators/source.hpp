@@ -1,7 +1,9 @@
 #pragma once
 
 #include <bodeflow/block.hpp>
+#include <bodeflow/numerics/error.hpp>
 #include <string>
+#include <utility>
 
 #include "hertz.hpp"
 
@@ -18,5 +20,15 @@ Rate source_rate(const Parameters& p);
 
 /// The facts of a source's output.
 StreamFacts source_facts(Rate rate, const std::string& unit, int channels = 1, std::int64_t length = -1);
+
+/// A whole number that sizes something: fails outside of lowest .. highest, whatever the host let through.
+std::int64_t whole(const Parameters& p, const char* name, std::int64_t lowest, std::int64_t highest);
+
+/// The value of a result; fails with its error.
+template <class T>
+T valid(numerics::Expected<T> result) {
+  if (!result) fail(result.error().text);
+  return std::move(*result);
+}
 
 }  // namespace bodeflow::generators

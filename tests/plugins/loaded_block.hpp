@@ -112,6 +112,8 @@ class LoadedBlock {
       f.length = c.length;
       f.unit = c.unit;
       if (c.channel_names != nullptr) f.channel_names.assign(c.channel_names, c.channel_names + c.channels);
+      for (std::uint64_t i = 0; i < c.note_count; ++i)
+        f.notes[c.notes[i].name].assign(c.notes[i].values, c.notes[i].values + c.notes[i].count);
       outputs_.push_back(f);
     }
     return outputs_;

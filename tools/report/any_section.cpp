@@ -40,6 +40,14 @@ std::string title_of(const std::string& name) {
   return shortened(title, 60);
 }
 
+/// Of attributes whose unit is fixed by their name.
+std::string unit_of(const std::string& name) {
+  if (name == "sample_rate") return " Hz";
+  if (name == "sample_time" || name == "delay") return " s";
+  if (name == "period" || name == "shift" || name == "dropped_samples") return " samples";
+  return "";
+}
+
 std::string shape_text(const Array& array) {
   std::string text;
   for (const std::uint64_t size : array.shape) text += (text.empty() ? "" : " × ") + counted(size);
@@ -111,7 +119,11 @@ void add_attributes(Page& page, const Record& record, const std::vector<std::str
   Facts facts;
   for (const auto& [name, value] : record.attributes.items()) {
     const bool elsewhere = std::find(shown_elsewhere.begin(), shown_elsewhere.end(), name) != shown_elsewhere.end();
-    if (name != "warnings" && !elsewhere) facts.emplace_back(title_of(name), attribute_text(value));
+    if (name == "warnings" || elsewhere) continue;
+    if (name == "sample_time" && value.is_number() && value.get<double>() == 0.0)
+      facts.emplace_back("Time", "continuous");
+    else
+      facts.emplace_back(title_of(name), value.is_number() ? attribute_text(value) + unit_of(name) : attribute_text(value));
   }
   add_facts(page.body(), facts);
 }

@@ -97,7 +97,7 @@ void add_log_ticks(Axis& axis, int wanted) {
   const int every = std::max(1, static_cast<int>(std::ceil(decades / wanted)));
   std::vector<double> factors{1.0};
   if (decades * 3.0 <= wanted + 1) factors = {1.0, 2.0, 5.0};
-  if (decades * 9.0 <= wanted + 1) factors = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0};
+  if (decades * 9.0 <= wanted + 1) factors = {1.0, 2.0, 3.0, 5.0, 7.0};
   for (int exponent = static_cast<int>(std::floor(low)); exponent <= static_cast<int>(std::ceil(high)); ++exponent) {
     for (int factor = 1; factor <= 9; ++factor) {
       const double value = factor * std::pow(10.0, exponent);

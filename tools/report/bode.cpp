@@ -30,14 +30,17 @@ Panel coherence_panel(const Response& response, const Array& coherence, const st
   Panel panel;
   panel.y.title = "Coherence";
   panel.height = 95.0;
-  panel.range = Extent{0.0, 1.0};
+  double least = 1.0;
   for (std::size_t n = 0; n < outputs.size(); ++n) {
     Series series;
     series.colour = static_cast<int>(n);
     series.x = response.frequency;
     for (std::size_t k = 0; k < response.lines(); ++k) series.y.push_back(coherence.re[response.at(k, outputs[n])]);
+    for (const double y : series.y)
+      if (y < least) least = y;
     panel.series.push_back(thinned(series, logarithmic));
   }
+  panel.range = Extent{least >= 0.99 ? 0.99 : least >= 0.9 ? 0.9 : least >= 0.5 ? 0.5 : 0.0, 1.0};
   return panel;
 }
 
@@ -151,10 +154,11 @@ BodeCurve bode_curve(const Response& response, std::size_t i, std::size_t j) {
     curve.magnitude.high.push_back(usable && !std::isnan(radius) ? decibel(size + radius) : kNaN);
     phase.push_back(usable ? std::arg(g) * kDegrees : kNaN);
     trusted.push_back(usable && !(radius >= size));
-    half.push_back(std::isnan(radius) || !usable ? kNaN : radius < size ? std::asin(radius / size) * kDegrees : HUGE_VAL);
+    half.push_back(std::isnan(radius) || !usable ? kNaN : std::asin(std::min(radius / size, 1.0)) * kDegrees);
   }
   curve.phase.y = unwrapped(phase, trusted);
   for (std::size_t k = 0; k < half.size(); ++k) {
+    if (!trusted[k]) curve.phase.y[k] = kNaN;
     curve.phase.low.push_back(curve.phase.y[k] - half[k]);
     curve.phase.high.push_back(curve.phase.y[k] + half[k]);
   }

@@ -12,8 +12,8 @@ struct BodeCurve {
   Series phase;
 };
 
-/// magnitude: 20 lg(|G| -+ r), the lower bound -infinity where the circle holds zero; phase: arg G -+ asin(r / |G|), unbounded
-/// there. Thinned to what a drawing can show.
+/// magnitude: 20 lg(|G| -+ r), the lower bound -infinity where the circle holds zero; phase: arg G -+ asin(r / |G|), a gap
+/// there, because the phase is not known. Thinned to what a drawing can show.
 BodeCurve bode_curve(const Response& response, std::size_t i, std::size_t j);
 
 /// Bode plots, one an input with up to four outputs in it; with a model its response over the data.

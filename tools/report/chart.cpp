@@ -48,8 +48,23 @@ Extent shown_extent(const Panel& panel) {
   return shown;
 }
 
+/// A little room, so that no curve runs along the frame.
+void add_room(Extent& extent, Scale scale) {
+  if (scale == Scale::logarithmic) {
+    const double factor = std::pow(extent.high / extent.low, 0.04);
+    if (!std::isfinite(factor)) return;
+    extent.low /= factor;
+    extent.high *= factor;
+    return;
+  }
+  const double room = 0.025 * (extent.high - extent.low);
+  extent.low -= room;
+  extent.high += room;
+}
+
 Axis vertical_axis(const Panel& panel, double height) {
-  const Extent extent = panel.range ? *panel.range : shown_extent(panel);
+  Extent extent = panel.range ? *panel.range : shown_extent(panel);
+  if (!panel.range) add_room(extent, panel.y.scale);
   return make_axis(panel.y.scale, extent.low, extent.high, static_cast<int>(height / 42.0), panel.y.title);
 }
 
@@ -132,7 +147,7 @@ void draw_levels(Markup& body, const Frame& frame, const std::vector<Level>& lev
   for (const auto& level : levels) {
     const double y = frame.py(level.y);
     draw_line(body, frame.left, y, frame.left + frame.width, y, "mark");
-    draw_text(body, frame.left + frame.width - 6.0, y - 5.0, level.label, Anchor::end, "q");
+    draw_text(body, frame.left + frame.width - 6.0, y - 5.0, level.label, Anchor::end, "q halo");
   }
 }
 

@@ -51,8 +51,9 @@ struct Chart {
 
 inline constexpr double kWide = 940.0;
 inline constexpr double kNarrow = 360.0;
+inline constexpr double kSmall = 410.0;
 
-/// The chart `width` wide: kWide for a page, kNarrow for a telephone or a grid of small charts.
+/// The chart `width` wide: kWide for a page, kNarrow for a telephone, kSmall for a grid of small charts.
 Picture draw_chart(const Chart& chart, double width);
 
 /// True where frequencies spread so far that a logarithmic axis tells more (from a factor of 4).

@@ -170,7 +170,7 @@ void draw_frame(Markup& body, const Frame& frame, bool x_labels) {
     const double x = frame.px(tick.value), half = 0.5 * text_width(tick.label, 11.0);
     if (x - half < free_from) continue;
     draw_text(body, x, bottom + 17.0, tick.label, Anchor::middle, "q");
-    free_from = x + half + 5.0;
+    free_from = x + half + 9.0;
   }
 }
 

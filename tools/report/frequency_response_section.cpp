@@ -168,8 +168,9 @@ std::string band_caption(const Response& response) {
   if (response.of_pairs("variance") == nullptr && response.of_pairs("confidence_radius") == nullptr)
     return "The record tells no uncertainty.";
   if (response.of_pairs("confidence_radius") != nullptr)
-    return fmt::format("Shaded: {} confidence region of each line by itself; where it holds zero the phase is not known",
-                       percent(response.confidence));
+    return fmt::format(
+        "Shaded: {} confidence region of each line by itself; where it holds zero the phase is not known and not drawn",
+        percent(response.confidence));
   if (std::isfinite(response.degrees_of_freedom))
     return fmt::format("Shaded: {} confidence region of each line by itself, from the variance with {} degrees of freedom",
                        percent(response.confidence), shown(response.degrees_of_freedom));

@@ -30,6 +30,8 @@ GivenPhase phase_of(const graph::Node& node) {
       for (const auto& block : entry.value.entries) phase.blocks.push_back(block_of(block));
     } else if (entry.key == "connections") {
       for (const auto& item : entry.value.items) phase.connections.push_back(text_of(item));
+    } else if (entry.key == "run" && entry.value.is_map()) {
+      for (const auto& setting : entry.value.entries) phase.settings.emplace_back(setting.key, text_of(setting.value));
     } else if (entry.key != "bodeflow" && entry.key != "title" && entry.key != "phases") {
       phase.settings.emplace_back(entry.key, text_of(entry.value));
     }

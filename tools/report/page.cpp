@@ -23,6 +23,11 @@ void Page::open_section(const std::string& title, const std::string& kind) {
 
 void Page::close_section() { body_.close("section").trusted("\n"); }
 
+/// The sentence after a figure's title.
+void Page::add_caption(const std::string& caption) {
+  if (!caption.empty()) body_.text(". " + caption + (caption.back() == '.' ? "" : "."));
+}
+
 std::string Page::keep_plot(const std::string& name, const Picture& picture) {
   plots_.push_back({unique(name, files_) + ".svg", standalone_svg(picture)});
   return plots_.back().file;
@@ -33,7 +38,7 @@ void Page::figure(const Picture& wide, const Picture& narrow, const std::string&
   body_.open("figure").open("div", {{"class", "wide"}}).add(inline_svg(wide)).close("div");
   body_.open("div", {{"class", "narrow"}}).add(inline_svg(narrow)).close("div");
   body_.open("figcaption").element("b", wide.title);
-  if (!caption.empty()) body_.text(". " + caption);
+  add_caption(caption);
   body_.close("figcaption").close("figure").trusted("\n");
 }
 
@@ -45,15 +50,16 @@ void Page::figure(const Picture& picture, const std::string& name, const std::st
   keep_plot(name, picture);
   body_.open("figure").open("div", {{"class", "scroll"}, {"tabindex", "0"}, {"role", "region"}, {"aria-label", picture.title}});
   body_.add(inline_svg(picture)).close("div").open("figcaption").element("b", picture.title);
-  if (!caption.empty()) body_.text(". " + caption);
+  add_caption(caption);
   body_.close("figcaption").close("figure").trusted("\n");
 }
 
 void Page::grid(const std::vector<Chart>& charts, const std::string& caption) {
   if (charts.empty()) return;
+  if (charts.size() == 1) return figure(charts[0], caption);
   body_.open("div", {{"class", "grid"}});
   for (const auto& chart : charts) {
-    const Picture picture = draw_chart(chart, kNarrow);
+    const Picture picture = draw_chart(chart, kSmall);
     keep_plot(chart.name, picture);
     body_.open("figure")
         .add(inline_svg(picture))

@@ -34,7 +34,7 @@ class Page {
   void figure(const Picture& picture, const std::string& name, const std::string& caption = "");
   /// A drawing that has two widths.
   void figure(const Picture& wide, const Picture& narrow, const std::string& name, const std::string& caption);
-  /// Small charts side by side.
+  /// Small charts side by side; one alone takes the whole width.
   void grid(const std::vector<Chart>& charts, const std::string& caption = "");
 
   /// A link to the columns as CSV, part of the page while there is room for it.
@@ -46,6 +46,7 @@ class Page {
   std::string html(const std::string& title, const Markup& header) const;
 
  private:
+  void add_caption(const std::string& caption);
   std::string keep_plot(const std::string& name, const Picture& picture);
   std::string unique(const std::string& name, std::set<std::string>& taken);
 

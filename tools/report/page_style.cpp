@@ -29,7 +29,7 @@ a{color:var(--link)}
 .badge{display:inline-block;font-size:.85rem;font-weight:600;padding:.1rem .6rem;border-radius:1rem;background:var(--soft);color:var(--quiet)}
 .badge.complete{background:var(--good-ground);color:var(--good)}.badge.partial{background:var(--warn-ground);color:var(--warn)}.badge.failed{background:var(--bad-ground);color:var(--bad)}
 .reason{color:var(--bad);font-weight:600}
-dl{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,13rem),1fr));gap:.55rem 1.5rem;margin:.75rem 0 1rem;font-variant-numeric:tabular-nums}
+dl{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,10.5rem),1fr));gap:.55rem 1.5rem;margin:.75rem 0 1rem;font-variant-numeric:tabular-nums}
 dt{font-size:.78rem;color:var(--quiet)}dd{margin:0}
 .caption,figcaption{font-size:.875rem;color:var(--quiet);max-width:48rem;margin:.35rem 0 0}
 figcaption b{color:var(--ink);font-weight:600}
@@ -45,8 +45,8 @@ table{border-collapse:collapse;font-size:.875rem;font-variant-numeric:tabular-nu
 caption{text-align:left;font-weight:600;padding:.25rem 0 .4rem}
 th,td{padding:.28rem .9rem .28rem 0;border-bottom:1px solid var(--line);vertical-align:top;text-align:left}
 thead th{color:var(--quiet);font-weight:500;border-bottom:1px solid var(--quiet);vertical-align:bottom}
-tbody th{font-weight:400}
-.n{text-align:right;white-space:nowrap}td.w,th.w{max-width:32rem}
+tbody th{font-weight:400}tbody th.w{min-width:8rem}
+.n{text-align:right;white-space:nowrap}td.w,th.w{max-width:34rem;overflow-wrap:anywhere;min-width:5.5rem}
 th.n:first-child{text-align:left}
 details{margin:.75rem 0;border:1px solid var(--line);border-radius:6px;padding:.5rem .9rem}
 summary{cursor:pointer;font-weight:500}details[open] summary{margin-bottom:.5rem}

@@ -99,7 +99,8 @@ std::string figure_style(bool dark) {
                        palette.series[i]);
     if (*kDashes[i] != '\0') css += fmt::format(".fig .d{}{{stroke-dasharray:{}}}", i, kDashes[i]);
   }
-  return css + ".fig .thin{stroke-width:1}.fig .model{stroke-width:2}";
+  return css + fmt::format(".fig .halo{{paint-order:stroke;stroke:{};stroke-width:3px;stroke-linejoin:round}}", palette.ground) +
+         ".fig .thin{stroke-width:1}.fig .model{stroke-width:2}";
 }
 
 void draw_text(Markup& body, double x, double y, std::string_view text, Anchor anchor, const char* style) {

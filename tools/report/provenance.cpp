@@ -24,11 +24,8 @@ std::string seed_of(const RunData& run) {
   std::string seeds;
   for (const auto& phase : run.phases)
     for (const auto& [name, value] : phase.settings) {
-      const auto at = name == "run" ? value.find("seed:") : std::string::npos;
-      if (at == std::string::npos) continue;
-      const auto from = value.find_first_not_of(' ', at + 5);
-      const std::string seed = from == std::string::npos ? "" : value.substr(from, value.find_first_of(",} \n", from) - from);
-      seeds += (seeds.empty() ? "" : ", ") + (phase.name.empty() ? seed : phase.name + ": " + seed);
+      if (name != "seed") continue;
+      seeds += (seeds.empty() ? "" : ", ") + (phase.name.empty() ? value : phase.name + ": " + value);
     }
   return seeds.empty() ? "1 (not given)" : seeds;
 }
@@ -116,9 +113,9 @@ void add_log(Page& page, const RunData& run) {
 void add_provenance(Page& page, const RunData& run) {
   const ordered_json& manifest = run.manifest;
   page.open_section("Provenance");
-  Facts facts;
+  Table table{"Run", {{"", false}, {"", false}}, {}};
   const auto add = [&](const char* name, const std::string& value) {
-    if (!value.empty()) facts.emplace_back(name, value);
+    if (!value.empty()) table.rows.push_back({name, value});
   };
   add("bodeflow", text_in(manifest, "bodeflow"));
   add("ABI", text_in(manifest, "abi"));
@@ -128,7 +125,7 @@ void add_provenance(Page& page, const RunData& run) {
   add("Started", text_in(manifest, "started"));
   add("Ended", text_in(manifest, "ended"));
   add("Graph file", text_in(manifest, "graph_file"));
-  add_facts(page.body(), facts);
+  add_table(page.body(), table);
   add_plugins(page, manifest);
   add_inputs(page, manifest);
   page.paragraph("To repeat the run and compare every output bit for bit:");

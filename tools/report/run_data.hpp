@@ -22,7 +22,7 @@ struct GivenBlock {
 
 struct GivenPhase {
   std::string name;                                           ///< "" in a graph without phases
-  std::vector<std::pair<std::string, std::string>> settings;  ///< run, when, repeat, sweep ...
+  std::vector<std::pair<std::string, std::string>> settings;  ///< clock, duration, seed, when, repeat, sweep ...
   std::vector<GivenBlock> blocks;
   std::vector<std::string> connections;
 };

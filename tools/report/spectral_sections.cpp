@@ -88,19 +88,22 @@ bool add_spectral_levels(Page& page, const Record& record) {
   add_attributes(page, record, {"output_names", "input_name"});
 
   Table table{"Median level over median noise (factors)", {{"Signal", false}, {"Excited"}, {"Odd"}, {"Even"}}, {}};
-  const auto add = [&](const std::string& name, const Array& values, const Array* its_noise, std::size_t c, std::size_t columns) {
+  const auto add = [&](const std::string& name, const Array& values, const Array* its_noise, std::size_t c, std::size_t columns,
+                       const char* caption) {
     Chart chart = levels_chart(record, values, its_noise, c, columns);
     chart.title = "Levels at " + name;
     chart.name = fmt::format("{}_levels_{}", record.key, page.plots().size() + 1);
-    page.figure(chart, "Lines that are not excited show what the plant's nonlinearity puts there, over the noise");
+    page.figure(chart, caption);
     table.rows.push_back({name, above_noise(record, values, its_noise, c, columns, 0.0),
                           above_noise(record, values, its_noise, c, columns, 1.0),
                           above_noise(record, values, its_noise, c, columns, 2.0)});
   };
   for (std::size_t i = 0; i < outputs && i < kMostPairs; ++i)
-    add(record.text_at("output_names", i, fmt::format("output {}", i + 1)), *level, noise, i, outputs);
+    add(record.text_at("output_names", i, fmt::format("output {}", i + 1)), *level, noise, i, outputs,
+        "Lines that are not excited show what the plant's nonlinearity puts there, over the noise");
   if (const Array* input = record.array("input_level", frequency->shape, true))
-    add(record.text_at("input_name", 0, "input"), *input, record.array("input_noise", frequency->shape), 0, 1);
+    add(record.text_at("input_name", 0, "input"), *input, record.array("input_noise", frequency->shape), 0, 1,
+        "What stands here at lines that are not excited came with the excitation, not from the plant's output");
   add_table(page.body(), table);
   return true;
 }

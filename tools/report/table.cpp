@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace bodeflow::tools::report {
@@ -18,10 +19,14 @@ std::string csv_title(const std::string& title) {
 void add_table(Markup& body, const Table& table) {
   if (table.rows.empty()) return;
   body.open("div", {{"class", "scroll"}, {"tabindex", "0"}, {"role", "region"}, {"aria-label", table.caption}}).open("table");
-  body.element("caption", table.caption).open("thead").open("tr");
+  body.element("caption", table.caption);
+  const bool headed =
+      std::any_of(table.columns.begin(), table.columns.end(), [](const Column& column) { return !column.title.empty(); });
+  if (headed) body.open("thead").open("tr");
   for (const auto& column : table.columns)
     body.element("th", {{"scope", "col"}, {"class", column.number ? "n" : "w"}}, column.title);
-  body.close("tr").close("thead").open("tbody");
+  if (headed) body.close("tr").close("thead");
+  body.open("tbody");
   for (const auto& row : table.rows) {
     body.open("tr");
     for (std::size_t i = 0; i < row.size(); ++i) {

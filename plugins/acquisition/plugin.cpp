@@ -1,3 +1,7 @@
+#include "adc_block.hpp"
 #include "file_block.hpp"
+#include "frequency_response_block.hpp"
+#include "resample_block.hpp"
 
-BODEFLOW_PLUGIN("acquisition", "0.1.0", bodeflow::acquisition::FileBlock)
+BODEFLOW_PLUGIN("acquisition", "0.1.0", bodeflow::acquisition::Adc, bodeflow::acquisition::FileBlock,
+                bodeflow::acquisition::FrequencyResponseBlock, bodeflow::acquisition::Resample)

@@ -81,6 +81,8 @@ class BlockDriver {
     r.output_flows = flows.data() + in.size();
     check(block_.resolve(block_.self, &r));
     input_facts_ = inputs;
+    samples_.clear();
+    for (const bf_flow& f : flows) samples_.push_back(f.samples);
     outputs_.clear();
     for (const bf_stream_facts& f : out) outputs_.push_back(owned(f));
     return outputs_;
@@ -114,7 +116,8 @@ class BlockDriver {
     check(block_.activate(block_.self, &a));
   }
 
-  /// One call with `count` firings; the outputs, port by port. `done` becomes what a source made of them.
+  /// One call with `count` firings, whose samples `inputs` holds; the outputs, port by port. `done` becomes what a source made of
+  /// them.
   std::vector<Channels> process(const std::vector<Channels>& inputs, std::uint64_t count) {
     return call(block_.process, inputs, count, nullptr);
   }
@@ -217,12 +220,16 @@ class BlockDriver {
     f.rate = Rate(c.rate);
     f.length = c.length;
     if (c.unit != nullptr) f.unit = c.unit;
+    if (c.clock != nullptr) f.clock = c.clock;
     for (std::uint64_t i = 0; i < c.note_count; ++i)
       f.notes[c.notes[i].name].assign(c.notes[i].values, c.notes[i].values + c.notes[i].count);
     if (c.channel_names != nullptr) f.channel_names.assign(c.channel_names, c.channel_names + c.channels);
     if (c.channel_units != nullptr) f.channel_units.assign(c.channel_units, c.channel_units + c.channels);
     return f;
   }
+
+  /// Samples that a firing moves on a port, the inputs before the outputs.
+  std::uint64_t samples_of(std::size_t port) const { return port < samples_.size() ? samples_[port] : 1; }
 
   template <class Function>
   std::vector<Channels> call(Function function, const std::vector<Channels>& inputs, std::uint64_t firings,
@@ -232,7 +239,8 @@ class BlockDriver {
       if (in[p].empty() && p < input_facts_.size()) in[p].resize(static_cast<std::size_t>(input_facts_[p].channels));
     }
     for (std::size_t p = 0; p < out.size(); ++p) {
-      out[p].assign(static_cast<std::size_t>(outputs_[p].known ? outputs_[p].channels : 0), std::vector<double>(firings));
+      out[p].assign(static_cast<std::size_t>(outputs_[p].known ? outputs_[p].channels : 0),
+                    std::vector<double>(firings * samples_of(in.size() + p)));
     }
     std::list<std::vector<void*>> places;
     const auto streams = [&](std::vector<Channels>& ports, bool elements_of_inputs) {
@@ -242,7 +250,8 @@ class BlockDriver {
         for (auto& channel : ports[p]) at.push_back(channel.data());
         places.push_back(std::move(at));
         const bool complex = elements_of_inputs && p < input_facts_.size() && input_facts_[p].element == BF_C64;
-        made.push_back({places.back().data(), 0, firings, static_cast<std::uint32_t>(ports[p].size()),
+        const std::uint64_t samples = firings * samples_of(elements_of_inputs ? p : inputs.size() + p);
+        made.push_back({places.back().data(), 0, samples, static_cast<std::uint32_t>(ports[p].size()),
                         static_cast<std::uint32_t>(complex ? BF_C64 : BF_F64)});
       }
       return made;
@@ -273,6 +282,7 @@ class BlockDriver {
   std::string error_;
   std::vector<StoredValue> values_;
   std::vector<StreamFacts> input_facts_, outputs_;
+  std::vector<std::uint32_t> samples_;
   std::vector<std::string> log_;
   std::vector<const bf_record*> records_;
   std::vector<std::uint64_t> record_positions_;

@@ -70,6 +70,21 @@ void check_outputs(const graph::Phase& phase, int block, const Facts::Block& fac
   }
 }
 
+/// A stream changes its clock domain in a resampler alone.
+void check_clock(const graph::Phase& phase, int block, const Facts::Block& facts, Problems& problems) {
+  if (may_join_clocks(*phase.blocks[block].type)) return;
+  const auto input = std::find_if(facts.inputs.begin(), facts.inputs.end(), [](const StreamFacts& f) { return f.known; });
+  if (input == facts.inputs.end()) return;
+  for (int port = 0; port < static_cast<int>(facts.outputs.size()); ++port) {
+    if (!facts.outputs[port].known || facts.outputs[port].clock == input->clock) continue;
+    problems.push_back(
+        {phase.blocks[block].place,
+         fmt::format("block '{}': {} runs on {}, {} on {}; only a resampler takes a stream to another clock",
+                     phase.blocks[block].name, stream_input(phase, {block, static_cast<int>(input - facts.inputs.begin())}),
+                     clock_text(input->clock), stream_output(phase, {block, port}), clock_text(facts.outputs[port].clock))});
+  }
+}
+
 /// "44.1 kHz (a.out), 48 kHz (b.out)": the different rates of the phase, each with the first stream that has it.
 std::string rates_of(const graph::Phase& phase, const Facts& facts) {
   std::vector<Rate> named;
@@ -131,6 +146,7 @@ Problems check_rates(const graph::Phase& phase, Facts& facts) {
     const std::size_t before = problems.size();
     check_inputs(phase, feeding[block], block, b, problems);
     if (problems.size() == before) check_outputs(phase, block, b, problems);
+    if (problems.size() == before) check_clock(phase, block, b, problems);
   }
   return problems;
 }

@@ -124,6 +124,23 @@ TEST_CASE("facts: two clock domains at one block need a resampler, unless the bl
   CHECK(net.try_facts());
 }
 
+TEST_CASE("facts: a stream changes its clock domain in a resampler alone") {
+  Net net;
+  net.phase.run.duration_s = 1.0;
+  net.source("model", {1000, 1});
+  net.add("bridge", {"in"}, {"out"}, [](const std::vector<StreamFacts>& in) {
+    Resolution r{{in[0]}, {Flow{}}, {Flow{}}};
+    r.outputs[0].clock = "scope";
+    return r;
+  });
+  net.connect("model", "bridge");
+  CHECK(errors(net) ==
+        "g.yaml:2:3: block 'bridge': bridge.in runs on the engine's clock, bridge.out on clock 'scope'; only a resampler takes a "
+        "stream to another clock");
+  net.type(1).roles = {"resampler"};
+  CHECK(net.try_facts());
+}
+
 TEST_CASE("facts: an element that a port can't take is refused at the connection, and nothing is said of what follows") {
   Net net;
   net.phase.run.duration_s = 1.0;

@@ -28,7 +28,9 @@ double roundest(double value, double tolerance, int& digits) {
 
 std::string number_text(double value) {
   char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  const bool plain = std::abs(value) >= 1e-4 && std::abs(value) < 1e15;  // 100000 rather than 1e+05
+  const auto end = plain ? std::to_chars(text, text + sizeof text, value, std::chars_format::fixed).ptr
+                         : std::to_chars(text, text + sizeof text, value).ptr;
   return {text, end};
 }
 
@@ -102,7 +104,7 @@ Rate Sampling::rate(double resolution_s) const {
   if (!(interval > 0.0)) return {};
   // Errors of half a place each, at their worst for the slope of a line: 1.5 places over the whole length.
   const double rounding = 1.5 * resolution_s / static_cast<double>(count_ - 1);
-  const double tolerance = std::max(std::max(rounding, interval_deviation_s()) / interval, kFinest);
+  const double tolerance = std::max(std::max(rounding, 2.0 * interval_deviation_s()) / interval, kFinest);
   int interval_digits = 0, rate_digits = 0;
   const double round_interval = roundest(interval, tolerance, interval_digits);
   const double round_rate = roundest(1.0 / interval, tolerance, rate_digits);

@@ -15,8 +15,8 @@ namespace bodeflow::acquisition {
 ///
 /// The interval is the slope of the least-squares line through all (n, t_n): with white jitter of the standard deviation s its
 /// own is s sqrt(12 / N^3), that of first and last time s sqrt(2) / N. It is rounded to the fewest digits, of itself or of its
-/// inverse, that lie within what the data can tell: the larger of that standard deviation and the error that the rounding of
-/// the written times can make.
+/// inverse, that lie within what the data can tell: the larger of two such standard deviations and the error that the rounding
+/// of the written times can make.
 class Sampling {
  public:
   /// How far a time may lie from its place, in sampling intervals.

@@ -203,6 +203,23 @@ TEST_CASE("CSV: every double is read correctly rounded") {
   CHECK(r.values[0] == sent);
 }
 
+TEST_CASE("CSV: short decimal numbers are read as the C library reads them") {
+  std::mt19937_64 random(8);
+  std::string text = "u\n0\n-0\n0.0\n-0.000000000000001\n999999999999999\n9999999999999999\n1.\n.5\n00012.50\n";
+  std::vector<double> expected = {0, -0.0, 0, -1e-15, 999999999999999, 9999999999999999.0, 1, 0.5, 12.5};
+  for (int n = 0; n < 5000; ++n) {
+    std::string number = std::to_string(random() % 1000000000000000);
+    number.insert(random() % number.size() + 1, ".");
+    if (n % 2 == 0) number.insert(0, "-");
+    text += number + "\n";
+    expected.push_back(std::strtod(number.c_str(), nullptr));
+  }
+  const test::Table r = read_text(text, kAt10Hz);
+  REQUIRE(r.error == "");
+  CHECK(r.values[0] == expected);
+  CHECK(std::signbit(r.values[0][1]));
+}
+
 TEST_CASE("CSV: flat tops that come back are suspected of clipping, a constant or a single plateau is not") {
   std::string text = "clipped,sine,constant,step\n";
   for (int n = 0; n < 400; ++n) {

@@ -1,6 +1,10 @@
 #include "acquisition/file_block.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "catch.hpp"
+#include "hdf5_writer.hpp"
 #include "plugins/block_driver.hpp"
 #include "read_whole.hpp"
 
@@ -110,4 +114,66 @@ TEST_CASE("file block: a file that changes between check and run ends the run") 
   file.write(table(50));
   block.activate(64, Rate(2500, 1));
   CHECK(failure_of([&] { block.process({}, 64); }) == file.path() + ": changed while it was read");
+}
+
+TEST_CASE("file block: a part of an HDF5 file is read, and what was found is told") {
+  const TemporaryFile file(".h5");
+  std::vector<double> sine, flat(1000, 3.0);
+  for (int n = 0; n < 1000; ++n) sine.push_back(std::min(std::sin(0.1 * n), 0.5));
+  test::Hdf5Writer(file.path())
+      .put("drive/u", sine)
+      .put("drive/brake", flat)
+      .put("drive/gain", {2.0}, {})
+      .attribute("drive/u", "unit", "V")
+      .attribute("drive", "rate", 500.0);
+  BlockDriver<FileBlock> block;
+  block.set("file", file.path()).set("start", std::int64_t{100}).set("count", std::int64_t{500});
+  block.configure();
+  const auto facts = block.resolve({});
+  CHECK(facts[0].length == 500);
+  CHECK(facts[0].rate == Rate(500, 1));
+  CHECK(facts[0].channel_names == std::vector<std::string>{"drive/brake", "drive/u"});
+  REQUIRE(block.log().size() == 3);
+  CHECK(block.log()[0] == file.path() +
+                              ": 500 rows (101 to 600 of 1000) at 500 Hz (1 s), rate as the file states it, gaps can't be seen "
+                              "without a time column; read drive/brake 3 to 3, drive/u [V] -0.99999 to 0.5; not read drive/gain "
+                              "(is a single number, no column)");
+  CHECK(block.log()[1] == "warning: " + file.path() + ": column 'drive/brake' is constant at 3: was it connected?");
+  CHECK(block.log()[2] ==
+        "warning: " + file.path() + ": column 'drive/u' rests 8 times at 0.5 for three samples or more: clipped?");
+  block.activate(64, Rate(500, 1));
+  std::vector<double> read;
+  while (read.size() < 500) {
+    const auto out = block.process({}, 64);
+    read.insert(read.end(), out[0][1].begin(), out[0][1].begin() + static_cast<std::ptrdiff_t>(block.done()));
+    if (block.done() < 64) break;
+  }
+  CHECK(read == std::vector<double>(sine.begin() + 100, sine.begin() + 600));
+}
+
+TEST_CASE("file block: parts, time units and data sets that make no sense are refused") {
+  const TemporaryFile file(".h5");
+  test::Hdf5Writer(file.path()).put("u", std::vector<double>(10, 1.0)).put("clock", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+  const auto refusal = [&](auto&& prepare) {
+    BlockDriver<FileBlock> block;
+    block.set("file", file.path());
+    prepare(block);
+    return failure_of([&] { block.configure(); });
+  };
+  using Driver = BlockDriver<FileBlock>;
+  CHECK(refusal([](Driver& b) { b.set("start", std::int64_t{3}).set("to", 1.0); }) ==
+        "start and count go by rows, from and to by time: give one pair");
+  CHECK(refusal([](Driver& b) { b.set("from", 2.0).set("to", 1.0); }) == "from is not before to");
+  CHECK(refusal([](Driver& b) { b.set("time_unit", std::string("V")); }) == "time_unit: 'V' is no unit of time");
+  CHECK(refusal([](Driver& b) { b.set("time_column", std::string("clok")); }) ==
+        file.path() + ": time_column: no column 'clok'; the file has clock, u (did you mean 'clock'?)");
+  CHECK(refusal([](Driver& b) { b.set("columns", std::vector<std::string>{"v"}); }) ==
+        file.path() + ": columns: no column 'v'; the file has clock, u");
+  BlockDriver<FileBlock> block;
+  block.set("file", file.path()).set("time_column", std::string("clock")).set("time_unit", std::string("ms")).set("to", 0.005);
+  block.configure();
+  const auto facts = block.resolve({});
+  CHECK(facts[0].channel_names == std::vector<std::string>{"u"});
+  CHECK(facts[0].rate == Rate(1000, 1));
+  CHECK(facts[0].length == 5);
 }

@@ -5,10 +5,12 @@
 #include <complex>
 #include <numbers>
 
+#include "period_kernels.hpp"
+
 namespace bodeflow::spectrum {
 
-AveragingDft::AveragingDft(Eigen::Index period, Layout layout, Detrend detrend)
-    : period_(period), layout_(layout), detrend_(detrend) {
+AveragingDft::AveragingDft(Eigen::Index period, Layout layout, Detrend detrend, int vector_level)
+    : period_(period), layout_(layout), detrend_(detrend), vector_level_(vector_level) {
   const Eigen::Index signals = layout.signals();
   dft_.reserve(static_cast<std::size_t>(signals));
   for (Eigen::Index a = 0; a < signals; ++a) {
@@ -17,7 +19,7 @@ AveragingDft::AveragingDft(Eigen::Index period, Layout layout, Detrend detrend)
     spectrum_.push_back(dft_.back().transform());
   }
   const Eigen::Index lines = dft_.front().lines();
-  for (auto* m : {&mean_, &first_, &second_}) m->resize(lines, signals);
+  for (auto* m : {&sum_, &first_, &second_}) m->resize(lines, signals);
   squares_.resize(lines, signals);
   products_.resize(lines, signals * (signals - 1) / 2);
   level_moment_.resize(signals);
@@ -26,7 +28,7 @@ AveragingDft::AveragingDft(Eigen::Index period, Layout layout, Detrend detrend)
 
 void AveragingDft::clear() {
   periods_ = 0;
-  mean_.setZero();
+  sum_.setZero();
   squares_.setZero();
   products_.setZero();
   level_moment_.setZero();
@@ -36,52 +38,33 @@ void AveragingDft::clear() {
 void AveragingDft::transform(Eigen::Index signal, const Eigen::Ref<const Eigen::VectorXd>& x) {
   numerics::RealDft& dft = dft_[static_cast<std::size_t>(signal)];
   const double offset = x[0];
-  dft.samples() = x.array() - offset;
+  copy_without(x.data(), offset, dft.samples().data(), static_cast<std::size_t>(period_), vector_level_);
   dft.transform()[0] += offset * static_cast<double>(period_);
 }
 
-/// Takes the spectrum of one signal into its mean and its products with the signals before it; leaves the deviation from the
-/// mean before it. One pass over the lines a signal, one a pair.
+/// Takes the spectrum of one signal into its sums, and leaves its deviation from the first period in its place: one pass over the
+/// lines, with the product of the signal before it, and one more for each other signal.
 void AveragingDft::update(Eigen::Index signal) {
-  const auto count = static_cast<double>(periods_);
-  const double scale = 1.0 / static_cast<double>(period_), share = 1.0 / count;
-  const double weight = (count - 1.0) / count;  // the sum of squares grows by weight |x_P - mean_(P-1)|^2
-  double* x = reinterpret_cast<double*>(spectrum_[static_cast<std::size_t>(signal)].data());
-  double* mean = reinterpret_cast<double*>(mean_.col(signal).data());
-  double* squares = squares_.col(signal).data();
-  const Eigen::Index lines = mean_.rows();
-  for (Eigen::Index k = 0; k < lines; ++k) {
-    const double re = x[2 * k] * scale - mean[2 * k], im = x[2 * k + 1] * scale - mean[2 * k + 1];
-    mean[2 * k] += re * share;
-    mean[2 * k + 1] += im * share;
-    squares[k] += weight * (re * re + im * im);
-    x[2 * k] = re;
-    x[2 * k + 1] = im;
-  }
-  for (Eigen::Index before = 0; before < signal; ++before) {
-    const double* other = reinterpret_cast<const double*>(spectrum_[static_cast<std::size_t>(before)].data());
-    double* sum = reinterpret_cast<double*>(products_.col(pair_column(signal, before)).data());
-    for (Eigen::Index k = 0; k < lines; ++k) {
-      sum[2 * k] += weight * (x[2 * k] * other[2 * k] + x[2 * k + 1] * other[2 * k + 1]);
-      sum[2 * k + 1] += weight * (x[2 * k + 1] * other[2 * k] - x[2 * k] * other[2 * k + 1]);
-    }
-  }
-}
-
-void AveragingDft::keep_single_periods() {
-  Eigen::MatrixXcd& kept = periods_ == 1 ? first_ : second_;
-  for (Eigen::Index a = 0; a < kept.cols(); ++a) {
-    kept.col(a) = spectrum_[static_cast<std::size_t>(a)] / static_cast<double>(period_);
+  const auto data = [](auto&& column) { return reinterpret_cast<double*>(column.data()); };
+  const auto spectrum = [&](Eigen::Index a) { return data(spectrum_[static_cast<std::size_t>(a)]); };
+  const auto products = [&](Eigen::Index before) { return data(products_.col(pair_column(signal, before))); };
+  const auto lines = static_cast<std::size_t>(sum_.rows());
+  const Sums sums{data(first_.col(signal)), data(sum_.col(signal)), squares_.col(signal).data()};
+  if (signal == 0) return add_deviation(spectrum(0), sums, lines, vector_level_);
+  add_deviation(spectrum(signal), sums, spectrum(signal - 1), products(signal - 1), lines, vector_level_);
+  for (Eigen::Index before = 0; before < signal - 1; ++before) {
+    add_products(spectrum(signal), spectrum(before), products(before), lines, vector_level_);
   }
 }
 
 void AveragingDft::add(const Eigen::Ref<const Eigen::MatrixXd>& frame) {
   for (Eigen::Index a = 0; a < frame.cols(); ++a) transform(a, frame.col(a));
   ++periods_;
-  if (periods_ <= 2) keep_single_periods();
   for (Eigen::Index a = 0; a < frame.cols(); ++a) {
-    const double level = spectrum_[static_cast<std::size_t>(a)][0].real() / static_cast<double>(period_);
-    level_moment_[a] += static_cast<double>(periods_ - 1) * (level - first_(0, a).real());
+    const auto& spectrum = spectrum_[static_cast<std::size_t>(a)];
+    if (periods_ == 1) first_.col(a) = spectrum;
+    if (periods_ == 2) second_.col(a) = spectrum;
+    level_moment_[a] += static_cast<double>(periods_ - 1) * (spectrum[0].real() - first_(0, a).real());
     update(a);
   }
 }
@@ -98,8 +81,7 @@ void AveragingDft::correct_drift(Eigen::MatrixXcd& mean) const {
   if (periods_ < 2) return;
   const double spread = count * (count * count - 1.0) / 12.0;  // sum_p (p - mean p)^2
   for (Eigen::Index a = 0; a < mean.cols(); ++a) {
-    const double levels = count * (mean_(0, a).real() - first_(0, a).real());  // sum_p (m_p - m_0)
-    const double slope = (level_moment_[a] - 0.5 * (count - 1.0) * levels) / (spread * samples);
+    const double slope = (level_moment_[a] - 0.5 * (count - 1.0) * sum_(0, a).real()) / (spread * samples * samples);
     for (Eigen::Index k = 1; k < mean.rows(); ++k) {
       const double angle = -2.0 * std::numbers::pi * static_cast<double>(k) / samples;
       mean(k, a) -= slope / (std::polar(1.0, angle) - 1.0);
@@ -109,23 +91,28 @@ void AveragingDft::correct_drift(Eigen::MatrixXcd& mean) const {
 
 Expected<Moments> AveragingDft::moments() const {
   if (periods_ == 0) return unexpected("no whole period was taken");
-  const auto count = static_cast<double>(periods_);
+  const auto count = static_cast<double>(periods_), samples = static_cast<double>(period_);
   Moments m;
   m.periods = periods_;
   m.degrees_of_freedom = count - 1.0;
-  m.mean = mean_;
+  m.first = first_ / samples;
+  m.mean = (first_ + sum_ / count) / samples;
   if (detrend_ == Detrend::linear) correct_drift(m.mean);
-  m.first = first_;
   if (periods_ == 1) return m;
-  const double scale = 1.0 / (count * (count - 1.0));
-  m.variance = scale * squares_;
-  m.covariance = scale * products_;
-  m.second = second_;
-  // What stands in spectrum_ is the newest period minus the mean before it: mean_P = mean_(P-1) + deviation / P.
-  m.last.resizeLike(mean_);
-  for (Eigen::Index a = 0; a < mean_.cols(); ++a) {
-    m.last.col(a) = mean_.col(a) + (count - 1.0) / count * spectrum_[static_cast<std::size_t>(a)];
+  const double scale = 1.0 / (count * (count - 1.0) * samples * samples);
+  const Eigen::Index signals = sum_.cols();
+  m.variance.resizeLike(squares_);
+  m.covariance.resizeLike(products_);
+  m.last.resizeLike(first_);
+  for (Eigen::Index a = 0; a < signals; ++a) {
+    m.variance.col(a) = scale * (squares_.col(a) - sum_.col(a).cwiseAbs2() / count).cwiseMax(0.0);
+    for (Eigen::Index b = 0; b < a; ++b) {
+      m.covariance.col(pair_column(a, b)) =
+          scale * (products_.col(pair_column(a, b)) - sum_.col(a).cwiseProduct(sum_.col(b).conjugate()) / count);
+    }
+    m.last.col(a) = (first_.col(a) + spectrum_[static_cast<std::size_t>(a)]) / samples;
   }
+  m.second = second_ / samples;
   return m;
 }
 

@@ -25,15 +25,16 @@ namespace bodeflow::spectrum {
 ///
 /// Reference: R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., Wiley 2012, chapter 2
 /// (periodic excitation, noise on input and output), doi:10.1002/9781118287422.
-/// Running means and sums of squares: B. P. Welford, Technometrics 4 (1962) 419, doi:10.1080/00401706.1962.10490022.
-/// Cost: O(N log N) a period and signal, and 513 x s (s + 1) / 2 updates for s signals of 1024 samples; nothing is allocated by
-/// `add`.
+/// Sums are taken of the deviations from the first period. As that is one of the periods, the subtraction of P |mean deviation|^2
+/// costs at most a factor P of the accuracy, however far the level: T. F. Chan, G. H. Golub, R. J. LeVeque, Am. Stat. 37 (1983)
+/// 242. Cost: O(N log N) a period and signal, and 513 x s (s + 1) / 2 updates for s signals of 1024 samples; nothing is allocated
+/// by `add`.
 class AveragingDft final : public Collector {
  public:
   enum class Detrend { none, linear };
 
-  /// period: N >= 3 samples; one signal or more of each kind but references.
-  AveragingDft(Eigen::Index period, Layout layout, Detrend detrend = Detrend::none);
+  /// period: N >= 3 samples; one signal or more of each kind but references; vector_level: see Activation.
+  AveragingDft(Eigen::Index period, Layout layout, Detrend detrend = Detrend::none, int vector_level = 1);
   /// One input and several outputs.
   AveragingDft(Eigen::Index period, Eigen::Index outputs) : AveragingDft(period, Layout{1, outputs, 0}) {}
 
@@ -54,20 +55,20 @@ class AveragingDft final : public Collector {
  private:
   void transform(Eigen::Index signal, const Eigen::Ref<const Eigen::VectorXd>& x);
   void update(Eigen::Index signal);
-  void keep_single_periods();
   void correct_drift(Eigen::MatrixXcd& mean) const;
 
   Eigen::Index period_;
   Layout layout_;
   Detrend detrend_;
+  int vector_level_;  // of Activation
   std::int64_t periods_ = 0;
   std::vector<numerics::RealDft> dft_;                  // one a signal
-  std::vector<Eigen::Map<Eigen::VectorXcd>> spectrum_;  // of the newest period, then minus the mean before it
-  // Lines 0 .. N/2 in rows: mean spectra and sums of squared deviations.
-  Eigen::MatrixXcd mean_;
+  std::vector<Eigen::Map<Eigen::VectorXcd>> spectrum_;  // of the newest period, then minus the first
+  // Lines 0 .. N/2 in rows, all times N: the first two periods; deviations from the first, their squares and products, summed up.
+  Eigen::MatrixXcd first_, second_;
+  Eigen::MatrixXcd sum_;
   Eigen::MatrixXd squares_;
   Eigen::MatrixXcd products_;
-  Eigen::MatrixXcd first_, second_;
   Eigen::VectorXd level_moment_;  // sum_p p (m_p - m_0) of the period means m_p
 };
 

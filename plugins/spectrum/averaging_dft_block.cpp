@@ -5,8 +5,10 @@
 
 #include "averaging_dft.hpp"
 #include "excitation_advice.hpp"
+#include "period_kernels.hpp"
 #include "period_selection.hpp"
 #include "response_checks.hpp"
+#include "signals.hpp"
 #include "transient_removal.hpp"
 
 namespace bodeflow::spectrum {
@@ -75,13 +77,9 @@ void AveragingDftBlock::check_signals(const Facts& f) const {
 }
 
 void AveragingDftBlock::name_signals(const StreamFacts& facts, const char* port) {
-  for (std::size_t c = 0; c < static_cast<std::size_t>(facts.channels); ++c) {
-    std::string name = c < facts.channel_names.size() ? facts.channel_names[c] : "";
-    if (name.empty()) name = facts.channels == 1 ? port : std::string(port) + "_" + std::to_string(c + 1);
-    measurement_.names.push_back(std::move(name));
-    const bool own = c < facts.channel_units.size() && !facts.channel_units[c].empty();
-    measurement_.units.push_back(own ? facts.channel_units[c] : facts.unit);
-  }
+  const Signals signals = signals_of(facts, port);
+  measurement_.names.insert(measurement_.names.end(), signals.names.begin(), signals.names.end());
+  measurement_.units.insert(measurement_.units.end(), signals.units.begin(), signals.units.end());
 }
 
 void AveragingDftBlock::resolve(Facts& f) {
@@ -110,7 +108,8 @@ void AveragingDftBlock::advise(const Facts& f, Advice& a) {
   }
 }
 
-void AveragingDftBlock::activate(const Activation&) {
+void AveragingDftBlock::activate(const Activation& a) {
+  vector_level_ = a.vector_level;
   const Layout& layout = measurement_.layout;
   const std::int64_t period = schedule_.period;
   frame_.resize(period, layout.signals());
@@ -120,7 +119,7 @@ void AveragingDftBlock::activate(const Activation&) {
     collector_ = std::make_unique<PeriodSelection>(period, layout, settings_.outliers);
   } else {
     const auto detrend = settings_.detrend ? AveragingDft::Detrend::linear : AveragingDft::Detrend::none;
-    collector_ = std::make_unique<AveragingDft>(period, layout, detrend);
+    collector_ = std::make_unique<AveragingDft>(period, layout, detrend, vector_level_);
   }
   reset();
 }
@@ -139,36 +138,28 @@ std::span<const double> AveragingDftBlock::samples(Io& io, Eigen::Index signal) 
   return c < inputs + outputs ? io.read(output, c - inputs) : io.read(reference, c - inputs - outputs);
 }
 
-void AveragingDftBlock::check_finite(Io& io) const {
-  for (Eigen::Index a = 0; a < frame_.cols(); ++a) {
-    const auto x = samples(io, a);
-    // 0 * x is 0 unless x is not finite.
-    const Eigen::Map<const Eigen::VectorXd> all(x.data(), static_cast<Eigen::Index>(x.size()));
-    if ((all.array() * 0.0).sum() == 0.0) continue;
-    for (std::size_t n = 0; n < x.size(); ++n) {
-      if (std::isfinite(x[n])) continue;
-      const bool in = a < measurement_.layout.inputs, ref = a >= measurement_.layout.inputs + measurement_.layout.outputs;
-      fail(std::string(in    ? "input '"
-                       : ref ? "reference '"
-                             : "output '") +
-           measurement_.names[static_cast<std::size_t>(a)] + "': sample " +
-           std::to_string(position_ + static_cast<std::int64_t>(n)) + " is " + (std::isnan(x[n]) ? "not a number" : "infinite"));
-    }
-  }
+/// Fails with the first sample of signal `a` in this call that is not finite.
+void AveragingDftBlock::refuse_sample(Io& io, Eigen::Index a) const {
+  const auto x = samples(io, a);
+  const auto bad = std::find_if(x.begin(), x.end(), [](double value) { return !std::isfinite(value); });
+  const Layout& l = measurement_.layout;
+  const std::string port = a < l.inputs ? "input" : a < l.inputs + l.outputs ? "output" : "reference";
+  fail(port + " '" + measurement_.names[static_cast<std::size_t>(a)] + "': sample " +
+       std::to_string(position_ + (bad - x.begin())) + " is " + (std::isnan(*bad) ? "not a number" : "infinite"));
 }
 
 /// Samples of this call, from `from` on, go to the frame as far as it has room; their number.
 std::size_t AveragingDftBlock::copy(Io& io, std::size_t from) {
   const std::size_t count = std::min(io.count() - from, static_cast<std::size_t>(schedule_.period - filled_));
   for (Eigen::Index a = 0; a < frame_.cols(); ++a) {
-    std::copy_n(samples(io, a).begin() + static_cast<std::ptrdiff_t>(from), count, frame_.col(a).begin() + filled_);
+    double* to = frame_.col(a).data() + filled_;
+    if (!copy_finite(samples(io, a).data() + from, to, count, vector_level_)) refuse_sample(io, a);
   }
   filled_ += static_cast<std::int64_t>(count);
   return count;
 }
 
 void AveragingDftBlock::process(Io& io) {
-  check_finite(io);
   std::size_t n = 0;
   while (n < io.count() && experiment_ < schedule_.count()) {
     const std::int64_t waiting = schedule_.averaged_from(experiment_) - (position_ + static_cast<std::int64_t>(n));

@@ -33,7 +33,7 @@ class AveragingDftBlock final : public Block {
   void check_signals(const Facts& f) const;
   void name_signals(const StreamFacts& facts, const char* port);
   std::span<const double> samples(Io& io, Eigen::Index signal) const;
-  void check_finite(Io& io) const;
+  [[noreturn]] void refuse_sample(Io& io, Eigen::Index a) const;
   std::size_t copy(Io& io, std::size_t from);
   void end_experiment();
   void send(Io& io, std::uint64_t offset, bool last);
@@ -43,6 +43,7 @@ class AveragingDftBlock final : public Block {
   Schedule schedule_;              // with the number of experiments
   Measurement measurement_;
 
+  int vector_level_ = 1;
   std::unique_ptr<Collector> collector_;
   Eigen::MatrixXd frame_;                   // one period; columns: inputs, outputs, references
   std::int64_t position_ = 0, filled_ = 0;  // samples seen; rows of the frame

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "signals.hpp"
+
 namespace bodeflow::spectrum {
 namespace {
 
@@ -19,6 +21,7 @@ constexpr double kTransient = 1.5;         // of the usual distance of a period,
 constexpr double kWorstCondition = 20.0;   // 26 dB of noise amplification at worst
 constexpr double kDistortionOverNoise = 3.0;
 constexpr double kNearNyquist = 0.8;
+constexpr double kRounding = 1e-10;  // of the excited lines: what a transform leaves between them
 
 std::string number(double x) {
   std::array<char, 32> text{};
@@ -28,9 +31,9 @@ std::string number(double x) {
 
 /// "3 of 24 lines (37 to 39 Hz ...": lines as a text.
 std::string lines_text(const std::vector<std::int64_t>& bad, std::size_t all, double line_hz) {
-  std::string text =
-      std::to_string(bad.size()) + " of " + std::to_string(all) + " lines (" + number(static_cast<double>(bad.front()) * line_hz);
-  if (bad.size() > 1) text += " to " + number(static_cast<double>(bad.back()) * line_hz);
+  std::string text = std::to_string(bad.size()) + " of " + std::to_string(all) + " lines (" +
+                     short_number(static_cast<double>(bad.front()) * line_hz);
+  if (bad.size() > 1) text += " to " + short_number(static_cast<double>(bad.back()) * line_hz);
   return text + " Hz)";
 }
 
@@ -94,7 +97,7 @@ void weak_input(const Judged& j, std::vector<std::string>& out) {
   }
   if (bad.empty()) return;
   out.push_back("the input stands less than 10 dB above its own noise at " + lines_text(bad, j.estimate.lines.size(), j.line_hz) +
-                ", at worst " + number(10.0 * std::log10(worst)) + " dB at " + number(worst_hz) +
+                ", at worst " + number(10.0 * std::log10(worst)) + " dB at " + short_number(worst_hz) +
                 " Hz: the response is biased there; put more amplitude on these lines, average more periods, or leave them out");
 }
 
@@ -105,10 +108,9 @@ void wrong_period(const Judged& j, std::vector<std::string>& out) {
     const double turn =
         2.0 * std::numbers::pi * static_cast<double>(j.estimate.lines.back()) * std::abs(e.samples) / static_cast<double>(period);
     if (!(std::abs(e.samples) > kSignificant * e.deviation) || turn * static_cast<double>(m.periods) < kTurnThatMatters) continue;
-    std::array<char, 48> found{};
-    std::snprintf(found.data(), found.size(), "%.10g", static_cast<double>(period) + e.samples);
     out.push_back("successive periods turn against each other, by up to " + number(turn) + " rad: the true period is " +
-                  found.data() + " samples rather than " + std::to_string(period) +
+                  number(std::abs(e.samples)) + " samples " + (e.samples > 0.0 ? "longer" : "shorter") + " than " +
+                  std::to_string(period) +
                   "; give the period of the excitation, or let generator and acquisition share one clock");
     return;
   }
@@ -139,8 +141,8 @@ void aliasing(const Judged& j, std::vector<std::string>& out) {
   const double nyquist = 0.5 * static_cast<double>(j.measured.period);
   const auto last = static_cast<double>(j.estimate.lines.back());
   if (last > kNearNyquist * nyquist) {
-    out.push_back("lines up to " + number(last * j.line_hz) + " Hz are excited, above 0.8 of the Nyquist frequency (" +
-                  number(nyquist * j.line_hz) +
+    out.push_back("lines up to " + short_number(last * j.line_hz) + " Hz are excited, above 0.8 of the Nyquist frequency (" +
+                  short_number(nyquist * j.line_hz) +
                   " Hz): what lies above it folds back there; use an anti-alias filter and a higher sample rate");
     return;
   }
@@ -203,11 +205,13 @@ void distortion(const Judged& j, std::vector<std::string>& out) {
   }
   if (j.levels.output_noise.size() == 0) return;
   const KindLevel odd = rms_of(j.levels, Levels::odd), even = rms_of(j.levels, Levels::even);
-  const Eigen::VectorXd noise = rms_noise(j.levels);
+  const Eigen::VectorXd noise = rms_noise(j.levels), excited = rms_of(j.levels, Levels::excited).level;
   for (Eigen::Index i = 0; i < noise.size(); ++i) {
+    if (!(noise[i] > 0.0)) continue;
     const double odd_ratio = odd.lines > 0 ? odd.level[i] / noise[i] : 0.0,
                  even_ratio = even.lines > 0 ? even.level[i] / noise[i] : 0.0;
     if (!(std::max(odd_ratio, even_ratio) > kDistortionOverNoise)) continue;
+    if (!(std::max(odd_ratio, even_ratio) * noise[i] > kRounding * excited[i])) continue;
     std::string what;
     if (odd_ratio > kDistortionOverNoise) what += "odd " + number(odd_ratio);
     if (even_ratio > kDistortionOverNoise) what += (what.empty() ? "even " : " and even ") + number(even_ratio);

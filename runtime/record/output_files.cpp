@@ -11,8 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 9> kOwnNames = {"graph.yaml", "plan.json",   "manifest.json", "events.jsonl", "log.txt",
-                                                  "data.h5",    "result.json", "report.html",   "sweep"};
+constexpr std::array<const char*, 10> kOwnNames = {"graph.yaml", "plan.json",   "manifest.json", "events.jsonl", "log.txt",
+                                                   "data.h5",    "result.json", "report.html",   "plots",        "sweep"};
 
 /// Why a name can't be used, whatever else is in the directory; "" : it can.
 std::string refusal(const fs::path& path) {

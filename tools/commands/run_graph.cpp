@@ -9,6 +9,7 @@
 #include "commands/plans.hpp"
 #include "commands/vector_level.hpp"
 #include "console/console.hpp"
+#include "report/report.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -64,6 +65,20 @@ void say_result(const phases::RunResult& result, const std::filesystem::path& di
   say(fmt::format("partial run: {}", directory.string()));
 }
 
+/// report.html, where that takes a moment only; what goes wrong with it is no failure of the run.
+void write_run_report(const std::filesystem::path& directory, const Registry& registry) {
+  if (!report::is_quick(directory)) {
+    say(fmt::format("large run: 'bodeflow report {}' writes its report", directory.string()));
+    return;
+  }
+  try {
+    const auto written = report::write_report({directory, {}}, registry);
+    if (!written) say_warning("no report: " + written.error());
+  } catch (const std::exception& error) {
+    say_warning(std::string("no report: ") + error.what());
+  }
+}
+
 }  // namespace
 
 RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph& options) {
@@ -112,6 +127,7 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
     if (ran.exit_code == kDone) ran.exit_code = kRunFailed;
   }
   if (result.hung) std::_Exit(ran.exit_code);
+  if (closed) write_run_report(ran.directory, registry);
   return ran;
 }
 

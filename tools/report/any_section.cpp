@@ -43,7 +43,8 @@ std::string title_of(const std::string& name) {
 /// Of attributes whose unit is fixed by their name.
 std::string unit_of(const std::string& name) {
   if (name == "sample_rate") return " Hz";
-  if (name == "sample_time" || name == "delay") return " s";
+  if (name == "sample_time" || name == "delay" || name == "standard_deviation" || name == "largest_delay") return " s";
+  if (name == "resolution") return " Hz";
   if (name == "period" || name == "shift" || name == "dropped_samples") return " samples";
   return "";
 }
@@ -60,6 +61,7 @@ std::string value_text(const Array& array, std::size_t n) {
 }
 
 void add_arrays(Page& page, const Record& record) {
+  if (record.arrays.empty()) return;
   Table table{"Arrays", {{"Array", false}, {"Unit", false}, {"Shape", false}, {"Values", false}}, {}};
   for (const auto& [name, array] : record.arrays) {
     std::string values;
@@ -115,7 +117,7 @@ Chart curve_of(const Record& record, const std::string& name, const Array& array
 
 }  // namespace
 
-void add_attributes(Page& page, const Record& record, const std::vector<std::string>& shown_elsewhere) {
+Facts facts_of(const Record& record, const std::vector<std::string>& shown_elsewhere) {
   Facts facts;
   for (const auto& [name, value] : record.attributes.items()) {
     const bool elsewhere = std::find(shown_elsewhere.begin(), shown_elsewhere.end(), name) != shown_elsewhere.end();
@@ -125,21 +127,41 @@ void add_attributes(Page& page, const Record& record, const std::vector<std::str
     else
       facts.emplace_back(title_of(name), value.is_number() ? attribute_text(value) + unit_of(name) : attribute_text(value));
   }
-  add_facts(page.body(), facts);
+  return facts;
+}
+
+void add_attributes(Page& page, const Record& record, const std::vector<std::string>& shown_elsewhere) {
+  add_facts(page.body(), facts_of(record, shown_elsewhere));
+}
+
+void add_curves(Page& page, const Record& record, const std::vector<std::string>& shown_elsewhere, std::size_t length) {
+  std::vector<Chart> charts;
+  for (const auto& [name, array] : record.arrays) {
+    const bool elsewhere = std::find(shown_elsewhere.begin(), shown_elsewhere.end(), name) != shown_elsewhere.end();
+    const bool fits = array.shape.size() == 1 && array.size() > kFewValues && (length == 0 || array.size() == length);
+    if (fits && !elsewhere && charts.size() < kMostCharts) charts.push_back(curve_of(record, name, array));
+  }
+  page.grid(charts);
+}
+
+void add_delay_estimate(Page& page, const Record& record) {
+  const double delay = record.number("delay"), deviation = record.number("standard_deviation");
+  if (std::isfinite(delay))
+    page.body()
+        .open("p")
+        .element("b", fmt::format("Delay {}{}", shown(delay, "s", 6),
+                                  std::isfinite(deviation) ? ", standard deviation " + shown(deviation, "s", 3) : ""))
+        .close("p");
+  add_any(page, record);
 }
 
 void add_any(Page& page, const Record& record) {
   add_attributes(page, record, {});
   add_arrays(page, record);
-  std::vector<Chart> charts;
-  for (const auto& [name, array] : record.arrays) {
-    const bool is_axis = name == "frequency" || name == "time" || name == "t";
-    if (array.shape.size() == 1 && array.size() > kFewValues && !is_axis && charts.size() < kMostCharts)
-      charts.push_back(curve_of(record, name, array));
+  for (const auto& [name, array] : record.arrays)
     if (array.shape.size() == 2 && array.size() > 1 && array.shape[0] <= kMostColumns && array.shape[1] <= kMostColumns)
       add_matrix(page, name, array);
-  }
-  page.grid(charts);
+  add_curves(page, record, {"frequency", "time", "t"}, 0);
 }
 
 }  // namespace bodeflow::tools::report

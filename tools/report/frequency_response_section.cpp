@@ -20,6 +20,12 @@ std::string form_text(const std::string& form) {
   if (form == "errors_in_variables") return "errors in variables (noise on input and output)";
   if (form == "known_input") return "known input (noise on the output)";
   if (form == "reference") return "by the reference (closed loop)";
+  if (form == "h1") return "H1 (noise on the output)";
+  if (form == "h2") return "H2 (noise on the input)";
+  if (form == "hv") return "Hv (noise on both)";
+  if (form == "local_polynomial") return "local polynomial method";
+  if (form == "stepped_sine") return "stepped sine";
+  if (form == "imported") return "imported from a file";
   return form;
 }
 
@@ -50,6 +56,9 @@ void add_main_figures(Page& page, const Response& response) {
   add("Dropped", "dropped_samples", "samples");
   if (!record.text("form").empty()) facts.emplace_back("Form", form_text(record.text("form")));
   if (!record.text("method").empty()) facts.emplace_back("Method", record.text("method"));
+  for (auto& fact : facts_of(record, {"form", "method", "periods", "realisations", "sample_rate", "period", "dropped_samples",
+                                      "degrees_of_freedom", "confidence", "input_names", "output_names", "response_units"}))
+    facts.push_back(std::move(fact));
   add_facts(page.body(), facts);
 }
 
@@ -199,6 +208,7 @@ bool add_frequency_response(Page& page, const Record& record) {
     page.grid(levels,
               "Distortion well above the noise: the response is that of the best linear approximation at this amplitude.");
   }
+  add_curves(page, record, {"frequency", "line"}, record.array("frequency")->size());
   add_numbers(page, *response);
   return true;
 }

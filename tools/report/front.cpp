@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "graph/load.hpp"
 #include "report/graph_drawing.hpp"
@@ -89,19 +89,23 @@ std::vector<Warning> warnings_of(const RunData& run) {
     warnings.push_back({fmt::format("Run: {}", run.status), reason, true});
   }
   for (const auto& problem : run.problems) warnings.push_back({"This report", problem, true});
-  std::set<std::string> known;
+  const std::size_t first = warnings.size();
+  const auto add = [&](const std::string& source, const std::string& text, bool bad) {
+    const auto known = std::find_if(warnings.begin() + static_cast<std::ptrdiff_t>(first), warnings.end(),
+                                    [&](const Warning& warning) { return warning.text == text; });
+    if (known == warnings.end())
+      warnings.push_back({source, text, bad});
+    else if (!bad && known->source.find(source) == std::string::npos)
+      known->source += ", " + source;
+  };
   for (const auto& record : run.records)
-    for (const auto& text : record.texts("warnings"))
-      if (known.insert(record.key + "\n" + text).second) warnings.push_back({record.key, text, false});
+    for (const auto& text : record.texts("warnings")) add(record.key, text, false);
   for (const auto& line : run.log) {
     if (line.level != "warning" && line.level != "error") continue;
     const auto colon = line.text.find(": ");
     const std::string source = colon == std::string::npos ? "Log" : line.text.substr(0, colon);
     const std::string text = colon == std::string::npos ? line.text : line.text.substr(colon + 2);
-    bool in_record = false;
-    for (const auto& record : run.records)
-      for (const auto& warning : record.texts("warnings")) in_record |= warning == text;
-    if (!in_record && known.insert(source + "\n" + text).second) warnings.push_back({source, text, line.level == "error"});
+    add(source, text, line.level == "error");
   }
   return warnings;
 }
@@ -134,8 +138,9 @@ void add_what_was_done(Page& page, const RunData& run, const Registry& registry)
     if (graph)
       for (const auto& phase : graph->phases)
         if (phase.name == given.name)
-          if (const auto picture = draw_phase(phase))
-            page.figure(*picture, phase.name.empty() ? "graph" : "graph_" + phase.name, "Streams are solid, records dashed");
+          if (const auto wide = draw_phase(phase, kWide))
+            page.drawing(*wide, *draw_phase(phase, kNarrow), phase.name.empty() ? "graph" : "graph_" + phase.name,
+                         "Streams are solid, records dashed");
     add_blocks(page, given);
     if (!graph && !given.connections.empty()) {
       std::string text;

@@ -1,13 +1,14 @@
 #include "report/graph_layout.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace bodeflow::tools::report {
 namespace {
 
 constexpr int kSweeps = 8;
-constexpr double kBendHeight = 14.0;
+constexpr double kBendSize = 14.0;
 
 /// Marks the edges that lead back to a box on the current path.
 void mark_backward(std::size_t boxes, std::vector<LayoutEdge>& edges) {
@@ -56,7 +57,7 @@ void add_bends(GraphLayout& layout) {
               to = layout.nodes[static_cast<std::size_t>(edge.to)].layer;
     for (int layer = from + 1; !edge.backward && layer < to; ++layer) {
       edge.by.push_back(static_cast<int>(layout.nodes.size()));
-      layout.nodes.push_back({layer, 0.0, 0.0, kBendHeight});
+      layout.nodes.push_back({layer, 0.0, 0.0, kBendSize});
     }
     edge.by.push_back(edge.to);
   }
@@ -100,34 +101,35 @@ void order_layers(GraphLayout& layout) {
 void settle(GraphLayout& layout, const std::vector<std::size_t>& layer, const std::vector<double>& wanted, double gap) {
   std::vector<double> down(layer.size()), up(layer.size());
   const auto distance = [&](std::size_t i) {
-    return 0.5 * (layout.nodes[layer[i - 1]].height + layout.nodes[layer[i]].height) + gap;
+    return 0.5 * (layout.nodes[layer[i - 1]].size + layout.nodes[layer[i]].size) + gap;
   };
   for (std::size_t i = 0; i < layer.size(); ++i)
     down[i] = i == 0 ? wanted[layer[0]] : std::max(wanted[layer[i]], down[i - 1] + distance(i));
   for (std::size_t i = layer.size(); i-- > 0;)
     up[i] = i + 1 == layer.size() ? wanted[layer[i]] : std::min(wanted[layer[i]], up[i + 1] - distance(i + 1));
-  for (std::size_t i = 0; i < layer.size(); ++i) layout.nodes[layer[i]].y = 0.5 * (down[i] + up[i]);
+  for (std::size_t i = 0; i < layer.size(); ++i) layout.nodes[layer[i]].middle = 0.5 * (down[i] + up[i]);
 }
 
 }  // namespace
 
-GraphLayout layout_graph(std::size_t boxes, std::vector<LayoutEdge> edges, double box_height, double gap) {
+GraphLayout layout_graph(const std::vector<double>& sizes, std::vector<LayoutEdge> edges, double gap) {
   GraphLayout layout;
-  layout.nodes.assign(boxes, {0, 0.0, 0.0, box_height});
+  for (const double size : sizes) layout.nodes.push_back({0, 0.0, 0.0, size});
   layout.edges = std::move(edges);
-  mark_backward(boxes, layout.edges);
-  place_in_layers(layout, boxes);
+  mark_backward(sizes.size(), layout.edges);
+  place_in_layers(layout, sizes.size());
   add_bends(layout);
   order_layers(layout);
   const auto layers = nodes_by_layer(layout);
-  for (auto& node : layout.nodes) node.y = node.order * (box_height + gap);
+  const double largest = sizes.empty() ? 0.0 : *std::max_element(sizes.begin(), sizes.end());
+  for (auto& node : layout.nodes) node.middle = node.order * (largest + gap);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    const auto wanted = neighbour_means(layout, 0, &LayoutNode::y);
+    const auto wanted = neighbour_means(layout, 0, &LayoutNode::middle);
     for (const auto& layer : layers) settle(layout, layer, wanted, gap);
   }
-  double top = 1e300;
-  for (const auto& node : layout.nodes) top = std::min(top, node.y - 0.5 * node.height);
-  for (auto& node : layout.nodes) node.y -= top;
+  double least = HUGE_VAL;
+  for (const auto& node : layout.nodes) least = std::min(least, node.middle - 0.5 * node.size);
+  for (auto& node : layout.nodes) node.middle -= least;
   return layout;
 }
 

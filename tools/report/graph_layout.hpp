@@ -15,12 +15,12 @@ struct LayoutEdge {
 /// A box, or a bend of an edge that crosses a layer (index from the number of boxes on).
 struct LayoutNode {
   int layer = 0;
-  double order = 0.0;  ///< within the layer
-  double y = 0.0;      ///< of its middle
-  double height = 0.0;
+  double order = 0.0;   ///< within the layer
+  double middle = 0.0;  ///< across the layers; the least border of all is 0
+  double size = 0.0;    ///< across the layers
 };
 
-/// A drawing in layers from left to right: edges without loops lead to the right, neighbours lie at like heights.
+/// A drawing in layers: edges without loops lead from layer to layer, neighbours lie beside each other.
 /// Method: Sugiyama, Tagawa & Toda, IEEE Trans. SMC 11, 1981: loops broken at the edge that closes them, longest path for the
 /// layers, barycentres for the order.
 struct GraphLayout {
@@ -29,6 +29,7 @@ struct GraphLayout {
   int layers = 0;
 };
 
-GraphLayout layout_graph(std::size_t boxes, std::vector<LayoutEdge> edges, double box_height, double gap);
+/// `sizes`: of each box across the layers; `gap`: between neighbours in a layer.
+GraphLayout layout_graph(const std::vector<double>& sizes, std::vector<LayoutEdge> edges, double gap);
 
 }  // namespace bodeflow::tools::report

@@ -67,7 +67,8 @@ std::vector<Chart> level_charts(const Response& response) {
   constexpr Kind kKinds[] = {{"output_mean", "excited lines", 0},
                              {"odd_distortion", "odd distortion", 1},
                              {"even_distortion", "even distortion", 3},
-                             {"noise_level", "noise", 2}};
+                             {"noise_level", "noise", 2},
+                             {"transient_level", "transient", 5}};
   bool any = false;
   for (const auto& kind : kKinds) any |= kind.colour != 0 && response.of_outputs(kind.array) != nullptr;
   for (std::size_t i = 0; any && i < response.outputs && i < kMostPairs; ++i) {

@@ -164,11 +164,10 @@ bool add_model(Page& page, const Record& record, const std::vector<Response>& re
   }
   if (const auto wide = draw_pole_zero(record, kWide)) {
     page.heading("Poles and zeros");
+    const std::string scales = is_z_plane(record) ? "" : "The two axes have scales of their own. ";
     page.figure(
         *wide, *draw_pole_zero(record, kNarrow), record.key + "_poles_zeros",
-        fmt::format(
-            "The axes have scales of their own. Zeros further out than {} times the outermost pole stand in the table only",
-            shown(kFarZero)));
+        scales + fmt::format("Zeros further out than {} times the outermost pole stand in the table only", shown(kFarZero)));
     add_roots(page, record, true);
     add_roots(page, record, false);
   }

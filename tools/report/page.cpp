@@ -46,10 +46,18 @@ void Page::figure(const Chart& chart, const std::string& caption) {
   figure(draw_chart(chart, kWide), draw_chart(chart, kNarrow), chart.name, caption);
 }
 
-void Page::figure(const Picture& picture, const std::string& name, const std::string& caption) {
-  keep_plot(name, picture);
-  body_.open("figure").open("div", {{"class", "scroll"}, {"tabindex", "0"}, {"role", "region"}, {"aria-label", picture.title}});
-  body_.add(inline_svg(picture)).close("div").open("figcaption").element("b", picture.title);
+void Page::drawing(const Picture& wide, const Picture& narrow, const std::string& name, const std::string& caption) {
+  keep_plot(name, wide);
+  body_.open("figure");
+  for (const auto& [style, picture] : {std::pair{"wide", &wide}, {"narrow", &narrow}})
+    body_
+        .open("div", {{"class", std::string("scroll natural ") + style},
+                      {"tabindex", "0"},
+                      {"role", "region"},
+                      {"aria-label", picture->title}})
+        .add(inline_svg(*picture))
+        .close("div");
+  body_.open("figcaption").element("b", wide.title);
   add_caption(caption);
   body_.close("figcaption").close("figure").trusted("\n");
 }

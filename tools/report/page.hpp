@@ -30,8 +30,8 @@ class Page {
 
   /// A chart in both widths, with its caption.
   void figure(const Chart& chart, const std::string& caption = "");
-  /// A drawing that is the same in every width.
-  void figure(const Picture& picture, const std::string& name, const std::string& caption = "");
+  /// A drawing that keeps its size, and scrolls by itself where the page is narrower.
+  void drawing(const Picture& wide, const Picture& narrow, const std::string& name, const std::string& caption);
   /// A drawing that has two widths.
   void figure(const Picture& wide, const Picture& narrow, const std::string& name, const std::string& caption);
   /// Small charts side by side; one alone takes the whole width.

@@ -40,7 +40,7 @@ figure{margin:1.25rem 0 1.5rem}
 .grid figure{margin:.5rem 0;display:flex;flex-direction:column-reverse;justify-content:flex-end}.grid .fig{width:100%}.grid figcaption{margin:0 0 .35rem}
 .scroll{overflow-x:auto;max-width:100%;margin:.75rem 0}
 .scroll:focus-visible{outline:2px solid var(--link);outline-offset:2px}
-.scroll .fig{max-width:none}
+.natural .fig{max-width:none;width:auto}
 table{border-collapse:collapse;font-size:.875rem;font-variant-numeric:tabular-nums;overflow-wrap:normal}
 caption{text-align:left;font-weight:600;padding:.25rem 0 .4rem}
 th,td{padding:.28rem .9rem .28rem 0;border-bottom:1px solid var(--line);vertical-align:top;text-align:left}
@@ -59,7 +59,7 @@ pre{background:var(--soft);border-radius:6px;padding:.7rem .9rem;margin:.5rem 0;
 .poly{font-variant-numeric:tabular-nums;overflow-x:auto}
 footer{margin-top:3rem;padding-top:1rem;border-top:1px solid var(--line);font-size:.85rem;color:var(--quiet)}
 @media (max-width:640px){.layout{padding:1.1rem .9rem 3rem}h1{font-size:1.4rem}h2{font-size:1.15rem;margin-top:2.25rem}
-.wide{display:none}.narrow{display:block}.narrow .fig{width:100%}dl{grid-template-columns:repeat(auto-fill,minmax(min(100%,9rem),1fr))}}
+.wide{display:none}.narrow{display:block}.narrow .fig{width:100%}.natural .fig{width:auto}dl{grid-template-columns:repeat(auto-fill,minmax(min(100%,9rem),1fr))}}
 @media (min-width:1280px){.layout{max-width:77rem;display:grid;grid-template-columns:13rem minmax(0,1fr);gap:2.5rem}
 nav{display:block;position:sticky;top:2rem;align-self:start;max-height:calc(100vh - 4rem);overflow-y:auto;font-size:.875rem}
 nav ol{list-style:none;margin:0;padding:0;border-left:1px solid var(--line)}nav a{display:block;padding:.2rem 0 .2rem .9rem;color:var(--quiet);text-decoration:none}nav a:hover{color:var(--link)}}
@@ -67,7 +67,7 @@ nav ol{list-style:none;margin:0;padding:0;border-left:1px solid var(--line)}nav 
 @media print{body{font-size:10.5pt}.layout{display:block;max-width:none;padding:0}nav,.csv{display:none}.wide{display:block}.narrow{display:none}
 h1{font-size:18pt}h2{font-size:13pt;margin-top:1.5rem;break-after:avoid}h3{break-after:avoid}
 figure,tr,dl>div,ul.warnings li{break-inside:avoid}caption{break-after:avoid}thead{display:table-header-group}
-.scroll,pre{overflow:visible}.scroll .fig{max-width:100%}.grid{grid-template-columns:1fr 1fr}details{border:0;padding:0}
+.scroll,pre{overflow:visible}.natural .fig{max-width:100%}.grid{grid-template-columns:1fr 1fr}details{border:0;padding:0}
 *{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
 )";
 

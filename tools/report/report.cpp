@@ -39,6 +39,7 @@ bool add_by_type(Page& page, const Record& record, const std::vector<Response>& 
   if (record.type == "controller") return add_controller(page, record);
   if (record.type == "trace") return add_trace(page, record);
   if (record.type == "sweep") return add_sweep(page, record);
+  if (record.type == "delay_estimate") return add_delay_estimate(page, record), true;
   return false;
 }
 

@@ -24,7 +24,14 @@ void add_sweep_charts(Page& page, const Record& record, std::size_t runs);
 /// Any record: its attributes, its arrays as numbers or as curves.
 void add_any(Page& page, const Record& record);
 
-/// The attributes that have not been shown elsewhere, as facts.
+/// Says the delay first, then what any record says.
+void add_delay_estimate(Page& page, const Record& record);
+
+/// The attributes that have not been shown elsewhere.
+Facts facts_of(const Record& record, const std::vector<std::string>& shown_elsewhere);
 void add_attributes(Page& page, const Record& record, const std::vector<std::string>& shown_elsewhere);
+
+/// One-dimensional arrays (of that length, unless it is 0) as small charts over frequency, time or index.
+void add_curves(Page& page, const Record& record, const std::vector<std::string>& shown_elsewhere, std::size_t length);
 
 }  // namespace bodeflow::tools::report

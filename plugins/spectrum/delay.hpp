@@ -31,12 +31,16 @@ struct DelayEstimate {
 /// Minimises J = sum_k w_k |H_k - a exp(-j omega_k tau)|^2, H = G/(j omega)^m, w = 1/var H: for each tau a is
 /// Re(sum w H exp(j omega tau)) / sum w; a grid of 16 points a period of the highest frequency, then Gauss-Newton.
 ///   var tau = s / (2 a^2 sum w omega^2),  s = max(1, J/(K - 1)), or J/(K - 1) without variances.
-/// Wrong where the plant is not a delayed gain (or integrator, by m) over the band: each pole or zero beyond the band adds about
-/// its time constant, one inside it shows as a misfit. Lines at a spacing D leave tau open by multiples of 1/D (1/(2D) where the
-/// sign of the gain is open too and the lines are odd multiples). It is the maximum-likelihood estimate of a real gain and a
-/// delay in circular normal noise. Reference: G. C. Carter, Coherence and time delay estimation, Proc. IEEE 75 (1987) 236,
-/// doi:10.1109/PROC.1987.13723. Cost: lines times grid points. Errors: fewer than 3 lines, no response, more than 1e9
-/// evaluations.
+///
+/// It is the maximum-likelihood estimate of a real gain and a delay in circular normal noise, independent from line to line;
+/// where neighbouring lines share data (local polynomials at each line) the standard deviation is too small. Wrong where the
+/// plant is not a delayed gain (or integrator, by m) over the band: each pole or zero beyond the band adds about its time
+/// constant, one inside it shows as a misfit. Lines at a spacing D leave tau open by multiples of 1/D (1/(2D) where the sign of
+/// the gain is open too and the lines are odd multiples).
+///
+/// Reference: G. C. Carter, Coherence and time delay estimation, Proc. IEEE 75 (1987) 236, doi:10.1109/PROC.1987.13723.
+///
+/// Cost: lines times grid points. Errors: fewer than 3 lines, no response, more than 1e9 evaluations.
 Expected<DelayEstimate> delay_of(const DelayProblem& problem);
 
 }  // namespace bodeflow::spectrum

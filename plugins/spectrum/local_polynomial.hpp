@@ -40,7 +40,7 @@ struct LocalPolynomialEstimate {
   Eigen::MatrixXd noise_level;      ///< lines x outputs: rms of the noise at one line, in the scale of the spectra
   Eigen::MatrixXd transient_level;  ///< lines x outputs: |T|, likewise; empty without transient
   double degrees_of_freedom = 0.0;  ///< nu
-  double least_input_ratio = 0.0;   ///< with a reference: smallest |G_ur|^2 / var G_ur of the determinant's inputs; else infinity
+  double least_input_ratio = 0.0;   ///< with a reference: least power of G_ur over its variance; else infinity
 };
 
 /// The frequency response by local polynomials, at each of `lines` (1 .. (N-1)/2, rising).

@@ -23,10 +23,13 @@ namespace bodeflow::spectrum {
 /// Attributes: periods, realisations and dropped samples are added, warnings collected, `form` is "merged" where they differ;
 /// `degrees_of_freedom` is the smallest of all lines, the confidence radii have those of their own line.
 /// Wrong where the experiments share noise or data (records of one growing average), and where the operating point differs and
-/// the plant is not linear. References: W. G. Cochran, Biometrics 10 (1954) 101, doi:10.2307/3001666; P. Meier, Variance of a
-/// weighted mean, Biometrics 9 (1953) 59, doi:10.2307/3001633; F. E. Satterthwaite, doi:10.2307/3002019. Errors: no experiment;
-/// other names or number of inputs or outputs, or other units, than the first; a variance that only some have; overlapping lines
-/// without variance.
+/// the plant is not linear.
+///
+/// References: W. G. Cochran, Biometrics 10 (1954) 101, doi:10.2307/3001666; P. Meier, Variance of a weighted mean,
+/// Biometrics 9 (1953) 59, doi:10.2307/3001633; F. E. Satterthwaite, doi:10.2307/3002019.
+///
+/// Errors: no experiment; other names or number of inputs or outputs, or other units, than the first; a variance that only some
+/// have; overlapping lines without variance.
 Expected<ResponseData> merge(const std::vector<ResponseData>& experiments);
 
 }  // namespace bodeflow::spectrum

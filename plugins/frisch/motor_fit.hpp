@@ -40,7 +40,7 @@ Expected<MotorFit> fit_motor(const Eigen::VectorXd& omega, const Eigen::VectorXc
 /// The errors-in-variables maximum likelihood fit to mean spectra, the recommended method:
 ///   min sum_k |Y_k - G U_k|^2 / (var Y_k + |G|^2 var U_k - 2 Re(conj(G) cov(Y, U)_k)).
 /// Twice the cost is chi-squared with 2K - 4 degrees of freedom: expected cost K - 2.
-/// Scatter within 7 % of the Cramer-Rao bound, no bias but the reported one, which is notable in Lm_beta alone.
+/// Scatter within 7 % of the Cramer-Rao bound, no bias but the reported one, some hundredths of a deviation.
 /// Method: as fit_motor, from the response Y/U. Covariance: (J^T J)^-1 / 2.
 /// Reference: R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed. 2012, chapter 9. Bias: M. J.
 /// Box, J. Royal Statistical Society B 33 (1971) 171.

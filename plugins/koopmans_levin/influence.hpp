@@ -10,10 +10,11 @@ namespace bodeflow::koopmans_levin {
 /// How much each line moves a solution: the first-order change of the estimate by the noise at that line.
 ///
 /// With the estimating equations (Sigma - lambda Lambda) x = 0 and the share of line k in them,
-///   f_k = w_k/L [Re(phi_k^H eps_k) - lambda Lambda_k x],  E f_k = 0,  Lambda_k = diag(ratio C_k, C_k), C_k(i,j) = cos((i-j)
-///   w_k),
-/// dx = -sum_i basis_i (basis_i^T f_k) / (squares_i - lambda), rescaled to keep A at 1 + .., and d lambda = x^T f_k / x^T Lambda
-/// x. Shares of different lines are independent for white noise, so sums of their squares are covariances (sandwich estimator):
+///   f_k = w_k/L [Re(phi_k^H eps_k) - lambda Lambda_k x],  E f_k = 0,
+/// Lambda_k = diag(ratio C_k, C_k), C_k(i,j) = cos((i-j) w_k), the solution moves by
+///   dx = -sum_i basis_i (basis_i^T f_k) / (squares_i - lambda), rescaled to keep A at 1 + ..,
+///   d lambda = x^T f_k / x^T Lambda x.
+/// Shares of different lines are independent for white noise, so sums of their squares are covariances (sandwich estimator):
 /// also for noise that is not normal, and with the noise-noise terms that a linearisation around clean data leaves out.
 /// Assumption: the band has several times as many lines as there are parameters.
 class Influence {

@@ -26,7 +26,7 @@ struct OrderScan {
 /// 1 + c z in A and B fits. What remains of a fall there is the correlation between neighbouring equation errors by chance, of
 /// standard deviation 1/sqrt(equations); t = 8 of these. So an order whose share in the noise is below t is not found (a weak
 /// mode): the table is there to be looked at.
-/// Reference: the rule of spec A5. Cost: one QR an order. Errors: highest order below 2; those of `factors` and `solve`. The scan
+/// Cost: one QR an order. Errors: highest order below 2; those of `factors` and `solve`. The scan
 /// ends early where data without noise leave more than one model.
 Expected<OrderScan> scan_orders(const Lines& lines, double ratio, Eigen::Index highest, bool transient = true);
 

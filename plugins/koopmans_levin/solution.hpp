@@ -40,7 +40,7 @@ struct Solution : Model {
 /// The model of smallest noise: Sigma x = lambda Lambda x for the smallest lambda, x scaled so that A begins with 1.
 ///
 /// Method: the transient is eliminated by QR, M = R22 C^-1 with C = blkdiag(sqrt(ratio) noise, noise), lambda = the smallest
-/// singular value of M squared, x = C^-1 v. Sigma itself is never formed (spec A1.4): right down to noise of 1e-8 of the signal.
+/// singular value of M squared, x = C^-1 v. Sigma itself is never formed: right down to noise of 1e-8 of the signal.
 /// Assumptions: white noise on both signals, independent of each other and of the signal; the ratio known. A ratio that is
 /// wrong by a factor 2 moves estimates by one to two standard deviations at 1000 samples; coloured noise biases them (see
 /// whiteness.hpp, ratio_sensitivity.hpp). Consistent, not efficient: maximum_likelihood.hpp scatters less.

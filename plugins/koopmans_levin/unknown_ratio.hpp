@@ -34,7 +34,7 @@ struct RatioEstimate {
 /// lags: M; where not given n for the full range, otherwise 1.5 * 2 pi / bandwidth, at least 16: shorter lags do not resolve a
 /// band. Consistent for white noise; with a strongly coloured input and 1000 samples it fails in some 3 of 100 records, more lags
 /// make it worse there. Wherever the noise can be measured (periodic excitation, an empty band), do: ratio_from_output_noise.
-/// Reference: the spec's A6, after T. Soderstrom, Automatica 43 (2007) 939, section 7.
+/// Reference: T. Soderstrom, Automatica 43 (2007) 939, section 7.
 /// Cost: O(lines (n + M)) a ratio, some 60 ratios. Errors: those of `solve` and of Influence; M below 1.
 Expected<RatioEstimate> ratio_by_covariance_matching(const Lines& lines, const Factors& factors,
                                                      std::optional<Eigen::Index> lags = std::nullopt);

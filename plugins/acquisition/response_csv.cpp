@@ -256,7 +256,7 @@ class Reader {
 
   ResponseTable finish(const RowParser& parser) {
     ResponseTable table;
-    table.format = "CSV, frequency in column " + shown(frequency_.header) + " [" + frequency_.unit + "]";
+    table.format = "CSV, frequency in column '" + frequency_.header + "' [" + frequency_.unit + "]";
     table.frequency_hz = axis_.take();
     for (std::size_t i = 0; i < quantities_.size(); ++i) {
       const Quantity& q = quantities_[i];

@@ -242,12 +242,7 @@ std::string Multisine::summary() const {
 
 void Multisine::process(Io& io) {
   const std::uint64_t begin = io.position();
-  std::uint64_t wanted = io.count();
-  if (length_ >= 0) {
-    const auto length = static_cast<std::uint64_t>(length_);
-    wanted = std::min(wanted, length > begin ? length - begin : 0);
-    if (wanted < io.count()) io.end_after(wanted);
-  }
+  const std::uint64_t wanted = before_end(io, length_);
   const auto period = static_cast<std::uint64_t>(design_.period);
   for (std::size_t j = 0; j < design_.inputs; ++j) {
     const auto y = io.write(out, static_cast<int>(j));

@@ -37,7 +37,10 @@ void Noise::configure(const Parameters& p) {
   change(p);
 }
 
-void Noise::resolve(Facts& f) { f.out(out) = source_facts(rate_, unit_, channels_); }
+void Noise::resolve(Facts& f) {
+  f.out(out) = source_facts(rate_, unit_, channels_);
+  f.out(out).notes["noise.std"] = {level_.std};
+}
 
 void Noise::activate(const Activation& a) {
   if (!own_seed_) seed_ = a.seed;

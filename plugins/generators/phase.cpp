@@ -32,10 +32,8 @@ Phase Phase::step(double frequency_hz, Rate rate) {
 }
 
 double Phase::cycles() const {
-  // The upper half rounded to nearest, read as a signed number: the fraction nearest to zero.
-  const auto upper = static_cast<std::uint64_t>(fraction_ >> 64);
-  const auto round = static_cast<std::uint64_t>(fraction_ >> 63) & 1u;
-  return static_cast<double>(static_cast<std::int64_t>(upper + round)) * 0x1.0p-64;
+  // Read as a signed number: the fraction nearest to zero.
+  return static_cast<double>(static_cast<std::int64_t>(fraction64())) * 0x1.0p-64;
 }
 
 }  // namespace bodeflow::generators

@@ -19,8 +19,16 @@ class Phase {
   static Phase step(double frequency_hz, Rate rate);
 
   Phase& operator+=(Phase other) { return fraction_ += other.fraction_, *this; }
+  Phase& operator-=(Phase other) { return fraction_ -= other.fraction_, *this; }
   /// The sum of n steps.
   Phase times(std::uint64_t n) const { return Phase(fraction_ * n); }
+
+  /// An n-th of the fraction of a cycle, rounded down; n >= 1.
+  Phase divided(std::uint64_t n) const { return Phase(fraction_ / n); }
+  /// The fraction of a cycle in units of 2^-64, rounded to nearest: just below a whole cycle it is 0.
+  std::uint64_t fraction64() const {
+    return static_cast<std::uint64_t>(fraction_ >> 64) + (static_cast<std::uint64_t>(fraction_ >> 63) & 1u);
+  }
 
   /// In cycles, in [-0.5, 0.5].
   double cycles() const;

@@ -1,5 +1,7 @@
 #include "sine_block.hpp"
 
+#include <cmath>
+
 #include "source.hpp"
 
 namespace bodeflow::generators {
@@ -27,7 +29,13 @@ void Sine::configure(const Parameters& p) {
   change(p);
 }
 
-void Sine::resolve(Facts& f) { f.out(out) = source_facts(rate_, unit_); }
+void Sine::resolve(Facts& f) {
+  f.out(out) = source_facts(rate_, unit_);
+  if (wave_.frequency == 0) return;
+  f.out(out).notes["excitation.frequencies"] = {wave_.frequency};
+  f.out(out).notes["excitation.amplitudes"] = {std::abs(wave_.amplitude)};
+  f.out(out).notes["excitation.period"] = {1 / wave_.frequency};
+}
 
 void Sine::activate(const Activation&) { reset(); }
 

@@ -1,5 +1,8 @@
 #include "source.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace bodeflow::generators {
 
 void describe_source(Describe& d) {
@@ -22,6 +25,21 @@ StreamFacts source_facts(Rate rate, const std::string& unit, int channels, std::
   facts.length = length;
   facts.unit = unit;
   return facts;
+}
+
+std::uint64_t first_sample(double time_s, Rate rate) {
+  const double place = time_s * rate.hz();
+  if (!(place >= 0 && place < 9e18)) fail("a time of " + std::to_string(time_s) + " s is no countable sample");
+  const double nearest = std::round(place);
+  return static_cast<std::uint64_t>(std::abs(place - nearest) <= 1e-6 + 1e-15 * place ? nearest : std::ceil(place));
+}
+
+std::size_t before_end(Io& io, std::int64_t length) {
+  if (length < 0) return static_cast<std::size_t>(io.count());
+  const auto end = static_cast<std::uint64_t>(length);
+  const std::uint64_t left = end > io.position() ? end - io.position() : 0;
+  if (left < io.count()) io.end_after(left);
+  return static_cast<std::size_t>(std::min<std::uint64_t>(left, io.count()));
 }
 
 std::int64_t whole(const Parameters& p, const char* name, std::int64_t lowest, std::int64_t highest) {

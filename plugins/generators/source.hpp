@@ -21,6 +21,12 @@ Rate source_rate(const Parameters& p);
 /// The facts of a source's output.
 StreamFacts source_facts(Rate rate, const std::string& unit, int channels = 1, std::int64_t length = -1);
 
+/// The first sample at or after a time [s]; a time within rounding of a sample is that sample. Fails beyond what can be counted.
+std::uint64_t first_sample(double time_s, Rate rate);
+
+/// How many of a call's firings lie before `length` (all of them where it is negative); tells the engine where the stream ends.
+std::size_t before_end(Io& io, std::int64_t length);
+
 /// A whole number that sizes something: fails outside of lowest .. highest, whatever the host let through.
 std::int64_t whole(const Parameters& p, const char* name, std::int64_t lowest, std::int64_t highest);
 

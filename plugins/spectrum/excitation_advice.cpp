@@ -131,6 +131,12 @@ class Adviser {
   void settling() {
     const std::vector<double> note = output_.note("plant.settling_time");
     if (note.empty() || p_.remove_transient) return;
+    if (!std::isfinite(note.front())) {
+      tell(
+          "the plant has a pole that does not decay: the offset that an integrator keeps does no harm, against its drift set "
+          "detrend: linear; an unstable plant needs a loop around it");
+      return;
+    }
     const double skipped = static_cast<double>(p_.schedule.skip * p_.schedule.period);
     const double samples = note.front() * rate_;
     if (skipped >= samples) return;

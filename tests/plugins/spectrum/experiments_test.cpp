@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <iostream>
+#include <limits>
 
 #include "catch.hpp"
 #include "data.hpp"
@@ -285,6 +286,8 @@ TEST_CASE("experiments: advice before a run") {
         "multiple of "
         "it");
   CHECK(wrong[4] == "warning: the plant settles in 0.25 s, and 0 s are skipped: set skip to 2, or transient: remove");
+  y.notes["plant.settling_time"] = {std::numeric_limits<double>::infinity()};
+  CHECK(advice(100, 0)[4].rfind("the plant has a pole that does not decay: ", 0) == 0);
 }
 
 TEST_CASE("experiments: the loops of every vector unit give the same bits") {

@@ -25,8 +25,7 @@ void Chirp::describe(Describe& d) {
       "falls with 1/f (logarithmic), with ripple at the ends of the band and a little power beyond. Periodic and in steady state "
       "it is analysed "
       "as a multisine on the lines of its period.");
-  d.reference(
-      "R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., 2012, section 5.2 (swept sine)");
+  d.reference("R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., 2012, chapter 5");
   d.reference(
       "A. Farina, Simultaneous measurement of impulse response and distortion with a swept-sine technique, AES 108, 2000");
   describe_source(d);

@@ -21,7 +21,7 @@ struct OscillatorBits {
 /// noise or weaker spurs. Phase dithering adds a uniform random number of the dropped bits to the phase first: the spurs become
 /// white noise of about the same power in all. Reference: H. T. Nicholas, H. Samueli, "An analysis of the output spectrum of
 /// direct digital frequency synthesizers in the presence of phase-accumulator truncation", Proc. 41st Frequency Control
-/// Symposium, 1987, doi:10.1109/FREQ.1987.201069.
+/// Symposium, 1987.
 class DigitalOscillator {
  public:
   /// 2 <= B <= 48, 1 <= T <= min(B, 20), 2 <= A <= 32.

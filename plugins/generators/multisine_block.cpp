@@ -72,7 +72,7 @@ void Multisine::describe(Describe& d) {
   d.reference(
       "T. P. Dobrowiecki, J. Schoukens, P. Guillaume, Optimized excitation signals for MIMO frequency response function "
       "measurements, "
-      "2006, doi:10.1109/TIM.2006.880305");
+      "2006");
   describe_source(d);
   d.required<std::int64_t>("period").range(4, 1 << 28).doc("samples of a period, N; factors of 2, 3 and 5 are prepared fastest");
   describe_lines(d);

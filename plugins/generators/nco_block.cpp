@@ -27,7 +27,7 @@ void Nco::describe(Describe& d) {
   d.reference(
       "H. T. Nicholas, H. Samueli, An analysis of the output spectrum of direct digital frequency synthesizers in the presence "
       "of "
-      "phase-accumulator truncation, 1987, doi:10.1109/FREQ.1987.201069");
+      "phase-accumulator truncation, 1987");
   describe_source(d);
   d.required<double>("frequency")
       .unit("Hz")

@@ -12,7 +12,7 @@ bool has_signs_only(std::size_t size);
 /// Hadamard matrix where n is a power of two, so that all experiments have the same peaks, the matrix of the Fourier transform,
 /// exp(2 pi i e j / n), elsewhere.
 /// Reference: T. P. Dobrowiecki, J. Schoukens, P. Guillaume, "Optimized excitation signals for MIMO frequency response function
-/// measurements", IEEE Trans. Instrum. Meas. 55, 2006, doi:10.1109/TIM.2006.880305.
+/// measurements", IEEE Trans. Instrum. Meas. 55, 2006.
 std::complex<double> orthogonal_entry(std::size_t experiment, std::size_t channel, std::size_t size);
 
 }  // namespace bodeflow::generators

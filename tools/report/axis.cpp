@@ -51,24 +51,24 @@ std::string linear_label(double value, double step, double largest) {
   return text.front() == '-' ? "−" + text.substr(1) : text;
 }
 
-void make_linear(Axis& axis, int wanted) {
-  double span = axis.high - axis.low;
+/// Makes room where all values are the same, or nearly.
+void widen(Axis& axis) {
   const double size = std::max(std::abs(axis.high), std::abs(axis.low));
-  const double least_span = axis.scale == Scale::decibel   ? 1.0
-                            : axis.scale == Scale::degrees ? 2.0
-                                                           : std::max(size * 1e-6, 1e-290);
-  if (span < least_span && axis.scale != Scale::exact) {
-    const double half = 0.5 * (axis.scale == Scale::linear && size > 0.0 ? 0.1 * size : least_span);
-    const double middle = 0.5 * (axis.low + axis.high);
-    axis.low = middle - half;
-    axis.high = middle + half;
-    span = axis.high - axis.low;
-  }
-  if (!(span > 0.0)) {
-    axis.low -= 0.5;
-    axis.high += 0.5;
-    span = 1.0;
-  }
+  double least = std::max(1e-9 * size, 1.0 / kLargest);  // what double precision can tell apart
+  if (axis.scale == Scale::decibel) least = std::max(least, 1.0);
+  if (axis.scale == Scale::degrees) least = std::max(least, 2.0);
+  if (axis.scale == Scale::linear) least = std::max(least, 1e-6 * size);
+  if (size == 0.0) least = 1.0;
+  if (axis.high - axis.low >= least) return;
+  if (axis.scale == Scale::linear && size > 0.0) least = 0.1 * size;
+  const double middle = 0.5 * axis.low + 0.5 * axis.high;
+  axis.low = middle - 0.5 * least;
+  axis.high = middle + 0.5 * least;
+}
+
+void make_linear(Axis& axis, int wanted) {
+  widen(axis);
+  const double span = axis.high - axis.low;
   const double step = step_of(axis.scale, span, wanted);
   if (axis.scale != Scale::exact) {
     axis.low = std::floor(axis.low / step + kSlack) * step;

@@ -55,7 +55,7 @@ void add_blocks(Page& page, const GivenPhase& phase) {
     std::string parameters;
     for (const auto& [name, value] : block.parameters)
       parameters += (parameters.empty() ? "" : ", ") + name + ": " + shortened(value, 200);
-    table.rows.push_back({block.name, block.id, parameters});
+    table.rows.push_back({block.name, block.id, parameters.empty() ? "defaults" : parameters});
   }
   add_table(page.body(), table);
 }

@@ -7,7 +7,8 @@
 namespace bodeflow::tools::report {
 namespace {
 
-constexpr int kSweeps = 8;
+constexpr int kSweeps = 8;       ///< of the order in the layers
+constexpr int kSettlings = 100;  ///< of the places
 constexpr double kBendSize = 14.0;
 
 /// Marks the edges that lead back to a box on the current path.
@@ -63,20 +64,31 @@ void add_bends(GraphLayout& layout) {
   }
 }
 
-/// The mean of `value` over the neighbours of each node, on one side or on both (side 0).
-std::vector<double> neighbour_means(const GraphLayout& layout, int side, double LayoutNode::*value) {
+using Weight = double (*)(bool a_is_box, bool b_is_box);
+
+/// The weighted mean of `value` over the neighbours of each node: those before it (side -1), after it (1), or both (0).
+std::vector<double> neighbour_means(const GraphLayout& layout, std::size_t boxes, int side, double LayoutNode::*value,
+                                    Weight weight) {
   std::vector<double> sum(layout.nodes.size(), 0.0), count(layout.nodes.size(), 0.0);
+  const auto add = [&](std::size_t to, std::size_t from, double w) {
+    sum[to] += w * (layout.nodes[from].*value);
+    count[to] += w;
+  };
   for (const auto& edge : layout.edges) {
     if (edge.backward) continue;
     for (std::size_t i = 0; i + 1 < edge.by.size(); ++i) {
       const auto a = static_cast<std::size_t>(edge.by[i]), b = static_cast<std::size_t>(edge.by[i + 1]);
-      if (side <= 0) sum[b] += layout.nodes[a].*value, count[b] += 1.0;
-      if (side >= 0) sum[a] += layout.nodes[b].*value, count[a] += 1.0;
+      const double w = weight(a < boxes, b < boxes);
+      if (side <= 0) add(b, a, w);
+      if (side >= 0) add(a, b, w);
     }
   }
   for (std::size_t n = 0; n < sum.size(); ++n) sum[n] = count[n] > 0.0 ? sum[n] / count[n] : layout.nodes[n].*value;
   return sum;
 }
+
+/// Long edges become straight first, then chains of boxes.
+double straightness(bool a_is_box, bool b_is_box) { return a_is_box && b_is_box ? 2.0 : a_is_box || b_is_box ? 0.5 : 8.0; }
 
 std::vector<std::vector<std::size_t>> nodes_by_layer(const GraphLayout& layout) {
   std::vector<std::vector<std::size_t>> layers(static_cast<std::size_t>(layout.layers));
@@ -87,27 +99,42 @@ std::vector<std::vector<std::size_t>> nodes_by_layer(const GraphLayout& layout) 
   return layers;
 }
 
-void order_layers(GraphLayout& layout) {
+void order_layers(GraphLayout& layout, std::size_t boxes) {
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) layout.nodes[n].order = static_cast<double>(n);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    const auto means = neighbour_means(layout, sweep % 2 == 0 ? -1 : 1, &LayoutNode::order);
+    const auto means =
+        neighbour_means(layout, boxes, sweep % 2 == 0 ? -1 : 1, &LayoutNode::order, [](bool, bool) { return 1.0; });
     for (std::size_t n = 0; n < means.size(); ++n) layout.nodes[n].order = means[n];
     for (const auto& layer : nodes_by_layer(layout))
       for (std::size_t i = 0; i < layer.size(); ++i) layout.nodes[layer[i]].order = static_cast<double>(i);
   }
 }
 
-/// Moves the nodes of a layer as near as possible to where they want to be, in their order and without overlap.
-void settle(GraphLayout& layout, const std::vector<std::size_t>& layer, const std::vector<double>& wanted, double gap) {
-  std::vector<double> down(layer.size()), up(layer.size());
-  const auto distance = [&](std::size_t i) {
-    return 0.5 * (layout.nodes[layer[i - 1]].size + layout.nodes[layer[i]].size) + gap;
+/// Moves the nodes of a layer as near as possible to where they want to be, in their order and without overlap: the least
+/// weighted sum of squares under these distances, by pooling neighbours that would overlap (isotonic regression).
+void settle(GraphLayout& layout, std::size_t boxes, const std::vector<std::size_t>& layer, const std::vector<double>& wanted,
+            double gap) {
+  struct Pool {
+    double weight, place;
+    std::size_t count;
   };
-  for (std::size_t i = 0; i < layer.size(); ++i)
-    down[i] = i == 0 ? wanted[layer[0]] : std::max(wanted[layer[i]], down[i - 1] + distance(i));
-  for (std::size_t i = layer.size(); i-- > 0;)
-    up[i] = i + 1 == layer.size() ? wanted[layer[i]] : std::min(wanted[layer[i]], up[i + 1] - distance(i + 1));
-  for (std::size_t i = 0; i < layer.size(); ++i) layout.nodes[layer[i]].middle = 0.5 * (down[i] + up[i]);
+  std::vector<double> offset(layer.size(), 0.0);
+  std::vector<Pool> pools;
+  for (std::size_t i = 0; i < layer.size(); ++i) {
+    if (i > 0) offset[i] = offset[i - 1] + 0.5 * (layout.nodes[layer[i - 1]].size + layout.nodes[layer[i]].size) + gap;
+    pools.push_back({layer[i] < boxes ? 4.0 : 1.0, wanted[layer[i]] - offset[i], 1});
+    while (pools.size() > 1 && pools[pools.size() - 2].place > pools.back().place) {
+      const Pool last = pools.back();
+      pools.pop_back();
+      Pool& pool = pools.back();
+      pool.place = (pool.weight * pool.place + last.weight * last.place) / (pool.weight + last.weight);
+      pool.weight += last.weight;
+      pool.count += last.count;
+    }
+  }
+  std::size_t i = 0;
+  for (const auto& pool : pools)
+    for (std::size_t n = 0; n < pool.count; ++n, ++i) layout.nodes[layer[i]].middle = pool.place + offset[i];
 }
 
 }  // namespace
@@ -119,13 +146,13 @@ GraphLayout layout_graph(const std::vector<double>& sizes, std::vector<LayoutEdg
   mark_backward(sizes.size(), layout.edges);
   place_in_layers(layout, sizes.size());
   add_bends(layout);
-  order_layers(layout);
+  order_layers(layout, sizes.size());
   const auto layers = nodes_by_layer(layout);
   const double largest = sizes.empty() ? 0.0 : *std::max_element(sizes.begin(), sizes.end());
   for (auto& node : layout.nodes) node.middle = node.order * (largest + gap);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    const auto wanted = neighbour_means(layout, 0, &LayoutNode::middle);
-    for (const auto& layer : layers) settle(layout, layer, wanted, gap);
+  for (int sweep = 0; sweep < kSettlings; ++sweep) {
+    const auto wanted = neighbour_means(layout, sizes.size(), 0, &LayoutNode::middle, straightness);
+    for (const auto& layer : layers) settle(layout, sizes.size(), layer, wanted, gap);
   }
   double least = HUGE_VAL;
   for (const auto& node : layout.nodes) least = std::min(least, node.middle - 0.5 * node.size);

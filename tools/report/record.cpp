@@ -86,7 +86,7 @@ std::string Record::text_at(const std::string& name, std::size_t i, const std::s
 std::uint64_t count_of(const std::vector<std::uint64_t>& shape) {
   std::uint64_t count = 1;
   for (const std::uint64_t size : shape) {
-    if (size != 0 && count > UINT64_MAX / size) return 0;
+    if (size != 0 && count > UINT64_MAX / size) return UINT64_MAX;
     count *= size;
   }
   return count;

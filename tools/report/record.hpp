@@ -38,7 +38,7 @@ struct Record {
   std::string text_at(const std::string& name, std::size_t i, const std::string& otherwise) const;
 };
 
-/// The product of the sizes; 0 also where it would be beyond 64 bits.
+/// The product of the sizes; the greatest number where it would be beyond 64 bits.
 std::uint64_t count_of(const std::vector<std::uint64_t>& shape);
 
 /// A record of data.h5.

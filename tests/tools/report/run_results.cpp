@@ -1,0 +1,207 @@
+#include "tools/report/run_results.hpp"
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+namespace bodeflow::test {
+namespace {
+
+using nlohmann::ordered_json;
+using Shape = std::vector<int>;
+
+ordered_json array_of(const std::string& unit, const Shape& shape, ordered_json data) {
+  return {{"unit", unit}, {"shape", shape}, {"data", std::move(data)}};
+}
+
+/// A list of `count` numbers from a function of the index.
+template <class F>
+ordered_json list(int count, F value) {
+  ordered_json data = ordered_json::array();
+  for (int n = 0; n < count; ++n) data.push_back(value(n));
+  return data;
+}
+
+constexpr int kLines = 40;
+
+double frequency(int k) { return 5.0 + 5.0 * k; }
+
+/// A resonance at 60 Hz behind a delay.
+std::complex<double> plant(double f) {
+  const std::complex<double> s(0.0, 2.0 * std::numbers::pi * f / (2.0 * std::numbers::pi * 60.0));
+  return std::polar(1.0, -0.004 * f) / (s * s + 0.04 * s + 1.0);
+}
+
+ordered_json complex_json(std::complex<double> z) { return {z.real(), z.imag()}; }
+
+ordered_json spectral_levels() {
+  const int lines = 60;
+  ordered_json record{{"type", "spectral_levels"},
+                      {"attributes",
+                       {{"periods", 6},
+                        {"realisations", 1},
+                        {"output_names", {"angle"}},
+                        {"input_name", "current"},
+                        {"warnings", ordered_json::array()}}}};
+  ordered_json& arrays = record["arrays"];
+  const auto kind = [](int k) { return k % 2 == 0 ? (k % 8 == 4 ? 1 : 0) : 2; };
+  arrays["frequency"] = array_of("Hz", {lines}, list(lines, [](int k) { return 5.0 + k; }));
+  arrays["line"] = array_of("", {lines}, list(lines, [](int k) { return 5 + k; }));
+  arrays["kind"] = array_of("", {lines}, list(lines, kind));
+  arrays["output_level"] = array_of("rad", {lines, 1}, list(lines, [&](int k) {
+                                      return kind(k) == 0 ? 1.0 : kind(k) == 1 ? 0.17 : 0.06;
+                                    }));
+  arrays["output_noise"] = array_of("rad", {lines, 1}, list(lines, [](int) { return 0.01; }));
+  arrays["input_level"] = array_of("A", {lines}, list(lines, [&](int k) { return kind(k) == 0 ? 2.0 : 0.001; }));
+  arrays["input_noise"] = array_of("A", {lines}, list(lines, [](int) { return 0.001; }));
+  return record;
+}
+
+ordered_json spectral_matrix() {
+  ordered_json record{
+      {"type", "spectral_matrix"},
+      {"attributes",
+       {{"signal_names", {"current", "angle"}}, {"signal_units", {"A", "rad"}}, {"windows", 8}, {"sample_rate", 1000.0}}}};
+  ordered_json& arrays = record["arrays"];
+  arrays["frequency"] = array_of("Hz", {kLines}, list(kLines, frequency));
+  arrays["matrix"] =
+      array_of("", {kLines, 2, 2}, list(4 * kLines, [](int n) { return complex_json(n % 4 == 0 || n % 4 == 3 ? 1.0 : 0.1); }));
+  arrays["noise_covariance"] = array_of("", {kLines, 2, 2}, list(4 * kLines, [](int) { return complex_json(1e-6); }));
+  return record;
+}
+
+ordered_json model() {
+  const double w = 2.0 * std::numbers::pi * 60.0;
+  ordered_json record{{"type", "model"},
+                      {"attributes",
+                       {{"method", "frisch.fit"},
+                        {"form", "transfer_function"},
+                        {"order", 2},
+                        {"sample_time", 0.0},
+                        {"delay", 0.0006},
+                        {"parameter_names", {"gain", "stiffness"}},
+                        {"warnings", {"a mode may be missing near 150 Hz: raise the order"}}}}};
+  ordered_json& arrays = record["arrays"];
+  arrays["numerator"] = array_of("", {1}, {w * w});
+  arrays["denominator"] = array_of("", {3}, {1.0, 0.04 * w, w * w});
+  arrays["parameters"] = array_of("", {2}, {1.0, 250.0});
+  arrays["covariance"] = array_of("", {2, 2}, {1e-4, 0.0, 0.0, 4.0});
+  const double re = -0.02 * w, im = w * std::sqrt(1.0 - 0.02 * 0.02);
+  arrays["poles"] = array_of("rad/s", {2}, {{re, im}, {re, -im}});
+  arrays["pole_covariance"] = array_of("", {2, 2, 2}, {1.0, 0.2, 0.2, 4.0, 1.0, -0.2, -0.2, 4.0});
+  return record;
+}
+
+ordered_json discrete_model() {
+  ordered_json record{{"type", "model"},
+                      {"attributes", {{"method", "subspace.fit"}, {"form", "state_space"}, {"sample_time", 0.002}}}};
+  ordered_json& arrays = record["arrays"];
+  arrays["A"] = array_of("", {2, 2}, {0.7, 0.6, -0.6, 0.7});
+  arrays["B"] = array_of("", {2, 1}, {1.0, 0.0});
+  arrays["C"] = array_of("", {1, 2}, {0.1, 0.2});
+  arrays["D"] = array_of("", {1, 1}, {0.0});
+  arrays["poles"] = array_of("", {2}, {{0.7, 0.6}, {0.7, -0.6}});
+  return record;
+}
+
+ordered_json monte_carlo() {
+  ordered_json record{{"type", "monte_carlo"},
+                      {"attributes", {{"runs", 100}, {"seed", 1}, {"quantity_names", {"inertia", "stiffness"}}}}};
+  for (const char* name : {"mean", "std", "truth", "published_mean", "published_std"})
+    record["arrays"][name] = array_of("", {2}, {0.0012, 512.0});
+  return record;
+}
+
+ordered_json sweep() {
+  ordered_json record{{"type", "sweep"}, {"attributes", {{"of", "frequency_response"}, {"runs", 3}}}};
+  ordered_json& arrays = record["arrays"];
+  arrays["axis.gain"] = array_of("", {3}, {0.5, 1.0, 2.0});
+  arrays["periods"] = array_of("", {3}, {4.0, 4.0, 4.0});
+  arrays["frequency"] = array_of("Hz", {3, kLines}, list(3 * kLines, [](int n) { return frequency(n % kLines); }));
+  arrays["response"] =
+      array_of("", {3, kLines, 1, 1},
+               list(3 * kLines, [](int n) { return complex_json((1.0 + n / kLines) * plant(frequency(n % kLines))); }));
+  return record;
+}
+
+}  // namespace
+
+const char* const kHostile = "</title></style><script>alert(1)</script>\"'><img src=x onerror=alert(2)>&amp;{}]]>";
+
+ordered_json response_record(int outputs, int inputs) {
+  const int pairs = outputs * inputs, count = kLines * pairs;
+  ordered_json record{{"type", "frequency_response"},
+                      {"attributes",
+                       {{"form", "errors_in_variables"},
+                        {"method", "spectrum.averaging_dft"},
+                        {"periods", 6},
+                        {"realisations", 1},
+                        {"confidence", 0.95},
+                        {"degrees_of_freedom", 5.0},
+                        {"warnings", {"only 6 periods: measure 12"}}}}};
+  for (int i = 0; i < outputs; ++i) record["attributes"]["output_names"].push_back("angle" + std::to_string(i + 1));
+  for (int j = 0; j < inputs; ++j) record["attributes"]["input_names"].push_back("current" + std::to_string(j + 1));
+  record["attributes"]["response_units"] = list(pairs, [](int) { return "rad/A"; });
+  ordered_json& arrays = record["arrays"];
+  const Shape shape{kLines, outputs, inputs}, of_outputs{kLines, outputs};
+  arrays["frequency"] = array_of("Hz", {kLines}, list(kLines, frequency));
+  arrays["response"] =
+      array_of("rad/A", shape, list(count, [&](int n) { return complex_json(plant(frequency(n / pairs)) / (1.0 + n % pairs)); }));
+  arrays["variance"] = array_of("", shape, list(count, [](int n) { return 1e-4 * (1.0 + n % 7); }));
+  // The last line's region holds zero
+  arrays["confidence_radius"] =
+      array_of("rad/A", shape, list(count, [&](int n) { return n / pairs == kLines - 1 ? 1.0 : 0.02; }));
+  arrays["noise_variance"] = array_of("", shape, list(count, [](int) { return 5e-5; }));
+  arrays["nonlinear_variance"] = array_of("", shape, list(count, [](int) { return 3e-4; }));
+  arrays["coherence"] = array_of("", of_outputs, list(kLines * outputs, [](int n) { return 0.95 + 0.001 * (n % 40); }));
+  for (const auto& [name, level] : {std::pair{"noise_level", 0.001}, {"odd_distortion", 0.017}, {"even_distortion", 0.006}})
+    arrays[name] =
+        array_of("rad", of_outputs, list(kLines * outputs, [&, size = level](int n) { return size * (1.0 + 0.1 * (n % 5)); }));
+  arrays["output_mean"] = array_of("rad", of_outputs, list(kLines * outputs, [](int n) { return complex_json(0.5 + 0.01 * n); }));
+  return record;
+}
+
+ordered_json results_of_all_types() {
+  ordered_json results;
+  results["response"] = response_record(1, 1);
+  results["matrix"] = response_record(3, 3);
+  results["levels"] = spectral_levels();
+  results["spectra"] = spectral_matrix();
+  results["fit"] = model();
+  results["discrete"] = discrete_model();
+  results["study"] = monte_carlo();
+  results["gains"] = sweep();
+  results["controller"] = {
+      {"type", "controller"},
+      {"attributes", {{"sample_time", 0.001}, {"accepted", false}, {"reason", "phase margin 21 degrees"}}},
+      {"arrays",
+       {{"R", array_of("", {2}, {1.0, -0.5})}, {"S", array_of("", {2}, {3.0, -2.0})}, {"T", array_of("", {1}, {1.0})}}}};
+  results["trace"] = {
+      {"type", "trace"},
+      {"attributes",
+       {{"verdict", "named"},
+        {"effects", {"dead_time"}},
+        {"unit", "V"},
+        {"error_before", 0.3},
+        {"error_after", 0.02},
+        {"error_remedied", nullptr},
+        {"noise_floor", 0.019}}},
+      {"arrays", {{"effect_parameters", array_of("s", {1}, {1.5e-6})}, {"effect_parameter_std", array_of("s", {1}, {1e-7})}}}};
+  results["lag"] = {{"type", "delay_estimate"},
+                    {"attributes", {{"delay", 0.0008}, {"standard_deviation", 1e-6}}},
+                    {"arrays", ordered_json::object()}};
+  results["news"] = {{"type", "something_new"},
+                     {"attributes", {{"level", 1.5}, {"names", {"a", "b"}}}},
+                     {"arrays",
+                      {{"time", array_of("s", {50}, list(50, [](int n) { return 0.1 * n; }))},
+                       {"signal", array_of("V", {50}, list(50, [](int n) { return std::sin(0.3 * n); }))},
+                       {"matrix", array_of("", {2, 2}, {1.0, 2.0, 3.0, 4.0})}}}};
+  return results;
+}
+
+ordered_json result_with(const ordered_json& results, const std::string& status) {
+  return {{"bodeflow", 1}, {"graph", "all_types"}, {"status", status}, {"results", results}};
+}
+
+}  // namespace bodeflow::test

@@ -54,13 +54,13 @@ std::string linear_label(double value, double step, double largest) {
 /// Makes room where all values are the same, or nearly.
 void widen(Axis& axis) {
   const double size = std::max(std::abs(axis.high), std::abs(axis.low));
-  double least = std::max(1e-9 * size, 1.0 / kLargest);  // what double precision can tell apart
+  double least = std::max(1e-9 * size, 1e-300);  // what double precision can tell apart
   if (axis.scale == Scale::decibel) least = std::max(least, 1.0);
   if (axis.scale == Scale::degrees) least = std::max(least, 2.0);
   if (axis.scale == Scale::linear) least = std::max(least, 1e-6 * size);
   if (size == 0.0) least = 1.0;
   if (axis.high - axis.low >= least) return;
-  if (axis.scale == Scale::linear && size > 0.0) least = 0.1 * size;
+  if (axis.scale == Scale::linear && size > 0.0) least = std::max(0.1 * size, least);
   const double middle = 0.5 * axis.low + 0.5 * axis.high;
   axis.low = middle - 0.5 * least;
   axis.high = middle + 0.5 * least;

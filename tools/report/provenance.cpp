@@ -129,7 +129,8 @@ void add_provenance(Page& page, const RunData& run) {
   add_plugins(page, manifest);
   add_inputs(page, manifest);
   page.paragraph("To repeat the run and compare every output bit for bit:");
-  page.body().element("pre", "bodeflow rerun " + shell_word(run.directory.string()));
+  page.body().element("pre",
+                      "bodeflow rerun " + shell_word(std::filesystem::absolute(run.directory).lexically_normal().string()));
   if (!run.graph_text.empty()) {
     open_details(page.body(), "Graph as expanded (graph.yaml)");
     page.body().element("pre", shortened(run.graph_text, 100'000));

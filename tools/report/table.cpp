@@ -23,7 +23,7 @@ void add_table(Markup& body, const Table& table) {
   const bool headed =
       std::any_of(table.columns.begin(), table.columns.end(), [](const Column& column) { return !column.title.empty(); });
   if (headed) body.open("thead").open("tr");
-  for (const auto& column : table.columns)
+  for (const auto& column : headed ? table.columns : std::vector<Column>{})
     body.element("th", {{"scope", "col"}, {"class", column.number ? "n" : "w"}}, column.title);
   if (headed) body.close("tr").close("thead");
   body.open("tbody");

@@ -56,6 +56,7 @@ TEST_CASE("report axis: extreme values give a finite axis with few ticks") {
   for (const Scale scale : {Scale::exact, Scale::linear, Scale::decibel, Scale::degrees, Scale::logarithmic})
     for (const auto& [low, high] : {std::pair{tiny, huge}, {huge, huge}, {tiny, tiny}, {1.0, huge}}) {
       const Axis axis = make_axis(scale, low, high, 6, "");
+      INFO(static_cast<int>(scale) << " from " << low << " to " << high);
       CHECK(std::isfinite(axis.low));
       CHECK(axis.low < axis.high);
       CHECK(axis.ticks.size() <= 210);

@@ -37,9 +37,14 @@ addEventListener('load', () => {
       }
     });
   }
-  document.documentElement.setAttribute('data-measured', encodeURIComponent(JSON.stringify(found)));
+  parent.postMessage(encodeURIComponent(JSON.stringify(found)), '*');
 });
 </script>)";
+
+// A window has a least width, a frame has none.
+constexpr const char* kFrame = R"(<!DOCTYPE html><html><body><script>
+addEventListener('message', event => document.documentElement.setAttribute('data-measured', event.data));
+</script><iframe src="page.html" style="border:0;width:@px;height:1200px"></iframe></body></html>)";
 
 std::vector<std::string> command(const fs::path& profile) {
   return {browser(),
@@ -99,10 +104,12 @@ std::string browser() {
 
 nlohmann::json measured(const fs::path& page, int width, bool dark) {
   const Folder folder;
-  const fs::path copy = folder.write("page.html", with_script(page));
-  const Ended ended = browse({"--window-size=" + std::to_string(width) + ",1200",
-                              std::string("--blink-settings=preferredColorScheme=") + (dark ? "0" : "1"), "--dump-dom"},
-                             copy);
+  folder.write("page.html", with_script(page));
+  std::string frame = kFrame;
+  frame.replace(frame.find('@'), 1, std::to_string(width));
+  const Ended ended = browse(
+      {"--window-size=1600,1300", std::string("--blink-settings=preferredColorScheme=") + (dark ? "0" : "1"), "--dump-dom"},
+      folder.write("frame.html", frame));
   const std::string mark = "data-measured=\"";
   const auto from = ended.out.find(mark);
   if (from == std::string::npos) return {{"error", ended.err}};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "averaging_dft.hpp"
 #include "excitation_advice.hpp"
@@ -31,7 +32,10 @@ void AveragingDftBlock::describe(Describe& d) {
       "doi:10.1002/9781118287422");
   d.stream_in(input).doc("what excites the plant: one channel per input");
   d.stream_in(output).doc("what the plant answers: one channel per output");
-  d.stream_in(reference).optional().doc("for form: reference; what drives the loop from outside: as many channels as inputs");
+  d.stream_in(reference).optional().doc(
+      "what drives the loop from outside, without noise: as many channels as inputs. For form: reference; with the other forms "
+      "it only tells which "
+      "lines are excited");
   d.message_out(out).record_type("frequency_response").doc("the frequency response, at the end and after each `every` periods");
   d.message_out(levels)
       .record_type("spectral_levels")
@@ -45,7 +49,6 @@ void AveragingDftBlock::check_signals(const Facts& f) const {
   const StreamFacts &u = f.in(input), &y = f.in(output), &r = f.in(reference);
   if (!u.rate.known()) fail("input 'input' has no sample rate");
   if (settings_.form == Form::reference && !r.known) fail("form: reference needs the input 'reference' connected");
-  if (settings_.form != Form::reference && r.known) fail("input 'reference' is connected; it is used with form: reference alone");
   if (r.known && r.channels != u.channels) {
     fail("input 'reference' has " + std::to_string(r.channels) + " channels; needed: as many as 'input', " +
          std::to_string(u.channels));
@@ -97,6 +100,7 @@ void AveragingDftBlock::resolve(Facts& f) {
   name_signals(u, "input");
   name_signals(y, "output");
   if (r.known) name_signals(r, "reference");
+  known_lines_ = excited_lines(r.known ? r : u, schedule_.period);
 }
 
 void AveragingDftBlock::advise(const Facts& f, Advice& a) {
@@ -201,7 +205,10 @@ void AveragingDftBlock::send(Io& io, std::uint64_t offset, bool last) {
   const auto estimate = estimate_response(measured, settings_.choice, settings_.form);
   if (!estimate) fail(estimate.error().text);
   const std::vector<std::int64_t>& named = settings_.choice.candidates;
-  const Levels band = levels_of(measured, estimate->lines, named.empty() ? estimate->lines.front() : named.front(),
+  std::vector<std::int64_t> driven;  // what the excitation says of itself, and what was found
+  std::set_union(known_lines_.begin(), known_lines_.end(), estimate->lines.begin(), estimate->lines.end(),
+                 std::back_inserter(driven));
+  const Levels band = levels_of(measured, driven, named.empty() ? estimate->lines.front() : named.front(),
                                 named.empty() ? estimate->lines.back() : named.back());
   measurement_.warnings =
       response_warnings({measured, *estimate, band, settings_.form, measurement_.line_hz(), measurement_.names});

@@ -42,6 +42,7 @@ class AveragingDftBlock final : public Block {
   AveragingDftSettings settings_;  // as given
   Schedule schedule_;              // with the number of experiments
   Measurement measurement_;
+  std::vector<std::int64_t> known_lines_;  // that the excitation states
 
   int vector_level_ = 1;
   std::unique_ptr<Collector> collector_;

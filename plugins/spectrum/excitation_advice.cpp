@@ -158,7 +158,8 @@ class Adviser {
     std::sort(amplitudes.begin(), amplitudes.end());
     const double amplitude = amplitudes[amplitudes.size() / 2];
     if (!(amplitude > 0.0)) return;
-    const auto samples = static_cast<double>(p_.schedule.period * periods_ * p_.schedule.realisations);
+    const auto samples =
+        static_cast<double>(p_.schedule.period) * static_cast<double>(periods_) * static_cast<double>(p_.schedule.count());
     const std::vector<double> known = output_.note("noise.std"), input_noise = input_.note("noise.std");
     const double noise = known.empty() ? 1.0 : known.front();
     const double deviation = 2.0 * noise / (amplitude * std::sqrt(samples));
@@ -169,7 +170,8 @@ class Adviser {
       text += ", with " + number(2.0 * input_noise.front() / (amplitude * std::sqrt(samples))) +
               " |G| from that of the input in quadrature";
     }
-    text += ", at lines of median amplitude " + number(amplitude) + "; 4 times the periods would halve it, in " +
+    text += ", at lines of median amplitude " + number(amplitude) +
+            (p_.schedule.experiments > 1 ? " of orthogonal experiments" : "") + "; 4 times the periods would halve it, in " +
             seconds(static_cast<double>(p_.schedule.count() * (p_.schedule.skip + 4 * periods_) * p_.schedule.period));
     tell(text);
   }
@@ -183,6 +185,18 @@ class Adviser {
 };
 
 }  // namespace
+
+std::vector<std::int64_t> excited_lines(const StreamFacts& excitation, std::int64_t period) {
+  std::vector<std::int64_t> lines;
+  if (!excitation.rate.known()) return lines;
+  for (const double f : excitation.note("excitation.frequencies")) {
+    const double k = f / excitation.rate.hz() * static_cast<double>(period);
+    if (k > 0.5 && k < 0.5 * static_cast<double>(period) && std::abs(k - std::round(k)) < 1e-3) lines.push_back(std::llround(k));
+  }
+  std::sort(lines.begin(), lines.end());
+  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+  return lines;
+}
 
 std::vector<Remark> measurement_advice(const Planned& planned, const StreamFacts& excitation, const StreamFacts& input,
                                        const StreamFacts& output) {

@@ -28,9 +28,13 @@ struct Remark {
 /// would give.
 ///
 /// With white noise of standard deviation s on the output, std G = 2 s / (a sqrt(N P)) at a line of peak value a: var Y_p = s^2 /
-/// N, |U| = a / 2; noise s_u on the input adds |G| s_u in quadrature to s. excitation: the reference where there is one, else the
-/// input.
+/// N, |U| = a / 2 (sqrt(N P E M) for E orthogonal experiments and M realisations); noise s_u on the input adds |G| s_u in quadrature
+/// to s. excitation: the reference where there is one, else the input.
 std::vector<Remark> measurement_advice(const Planned& planned, const StreamFacts& excitation, const StreamFacts& input,
                                        const StreamFacts& output);
+
+/// The lines of a period of N samples that a stream's notes say are excited, rising; empty where they say nothing. Frequencies
+/// between lines are left out.
+std::vector<std::int64_t> excited_lines(const StreamFacts& excitation, std::int64_t period);
 
 }  // namespace bodeflow::spectrum

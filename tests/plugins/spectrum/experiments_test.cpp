@@ -197,7 +197,7 @@ TEST_CASE("experiments: a schedule that contradicts itself or the data is refuse
         "the data ended in experiment 1 of realisation 3 after 0 of 3 averaged periods; needed: 2560 samples, found 1024");
 }
 
-TEST_CASE("experiments: a reference of other size or clock is refused, and one without use") {
+TEST_CASE("experiments: a reference of other size or clock is refused") {
   const auto refusal = [](const char* form, const StreamFacts& reference) {
     Driver block;
     block.set("period", std::int64_t{kSamples}).set("form", form);
@@ -210,7 +210,7 @@ TEST_CASE("experiments: a reference of other size or clock is refused, and one w
   CHECK(refusal("reference", facts(2, "V")) == "input 'reference' has 2 channels; needed: as many as 'input', 1");
   CHECK(refusal("reference", other) ==
         "inputs 'input' and 'reference' have the clock domains '' and 'card'; a spectrum needs one clock");
-  CHECK(refusal("known_input", facts(1, "V")) == "input 'reference' is connected; it is used with form: reference alone");
+  CHECK(refusal("known_input", facts(1, "V")) == "no failure");
 }
 
 TEST_CASE("experiments: levels tell excited, odd and even lines, and warnings go to the log and the records") {
@@ -238,6 +238,57 @@ TEST_CASE("experiments: levels tell excited, odd and even lines, and warnings go
   const RecordView response = record(block, "frequency_response");
   CHECK(values<double>(response, "odd_distortion").size() == 3);
   CHECK(values<double>(response, "even_distortion")[0] > 10.0 * values<double>(response, "odd_distortion")[0]);
+}
+
+TEST_CASE("experiments: a loop is measured from its reference, which also tells what is excited") {
+  // u = r - 0.5 y, y = 2 u + v: G = 2, U = R / 2 - V / 4.
+  numerics::Random random(1);
+  const Eigen::VectorXd r = random_multisine(kSamples, {3, 6, 9}, 1.0, random);
+  std::vector<Channels> s{Channels(1), Channels(1), Channels(1)};
+  for (int n = 0; n < 8 * kSamples; ++n) {
+    const double v = 0.01 * random.normal();
+    s[0][0].push_back(0.5 * r[n % kSamples] - 0.25 * v);
+    s[1][0].push_back(r[n % kSamples] + 0.5 * v);
+    s[2][0].push_back(r[n % kSamples]);
+  }
+  for (const char* form : {"reference", "errors_in_variables"}) {
+    Driver block;
+    block.set("period", std::int64_t{kSamples}).set("form", form);
+    feed(block, s, 100);
+    const RecordView found = record(block, "frequency_response");
+    CHECK(found.text("form") == form);
+    CHECK(found.texts("input_names") == std::vector<std::string_view>{"input"});
+    CHECK(values<std::int64_t>(found, "line") == std::vector<std::int64_t>{3, 6, 9});
+    const auto G = values<Complex>(found, "response");
+    const auto variance = values<double>(found, "variance");
+    for (std::size_t k = 0; k < 3; ++k) CHECK(std::norm(G[k] - 2.0) < 20.0 * variance[k]);
+    // dG = (dY - 2 dU) / U = V / U.
+    CHECK(variance[0] + variance[1] + variance[2] == Approx(3.0 * 1e-4 / (8 * kSamples) / 0.0625).epsilon(0.8));
+  }
+}
+
+TEST_CASE("experiments: lines that the excitation states are no distortion, however small") {
+  numerics::Random random(1);
+  const Eigen::VectorXd u = random_multisine(kSamples, {3, 9}, 1.0, random) + random_multisine(kSamples, {5}, 0.02, random);
+  std::vector<Channels> s{Channels(1), Channels(1)};
+  for (int n = 0; n < 6 * kSamples; ++n) {
+    s[0][0].push_back(u[n % kSamples]);
+    s[1][0].push_back(u[n % kSamples] + 1e-3 * random.normal());
+  }
+  const auto kinds = [&](bool stated) {
+    Driver block;
+    block.set("period", std::int64_t{kSamples});
+    StreamFacts input = facts(1, "V");
+    if (stated) input.notes["excitation.frequencies"] = {3000.0 / kSamples, 5000.0 / kSamples, 9000.0 / kSamples};
+    block.configure();
+    block.resolve({input, facts(1, "V"), {}});
+    block.activate(s[0][0].size(), input.rate);
+    block.process({s[0], s[1]}, s[0][0].size());
+    block.finish();
+    return values<std::int64_t>(record(block, "spectral_levels"), "kind");
+  };
+  CHECK(kinds(false) == std::vector<std::int64_t>{0, 2, 1, 2, 1, 2, 0});
+  CHECK(kinds(true) == std::vector<std::int64_t>{0, 2, 0, 2, 1, 2, 0});
 }
 
 TEST_CASE("experiments: outliers are counted and named in a warning") {

@@ -1,8 +1,7 @@
 // The reader of MATLAB v5 files on arbitrary bytes.
-#include "acquisition/mat_table.hpp"
-
 #include <string_view>
 
+#include "acquisition/mat_table.hpp"
 #include "table.hpp"
 
 using namespace bodeflow;

@@ -1,8 +1,7 @@
 // The reader of universal files (data sets 58 and 58b) on arbitrary bytes.
-#include "acquisition/uff_table.hpp"
-
 #include <string_view>
 
+#include "acquisition/uff_table.hpp"
 #include "table.hpp"
 
 using namespace bodeflow;

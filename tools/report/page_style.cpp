@@ -63,7 +63,7 @@ footer{margin-top:3rem;padding-top:1rem;border-top:1px solid var(--line);font-si
 @media (min-width:1280px){.layout{max-width:77rem;display:grid;grid-template-columns:13rem minmax(0,1fr);gap:2.5rem}
 nav{display:block;position:sticky;top:2rem;align-self:start;max-height:calc(100vh - 4rem);overflow-y:auto;font-size:.875rem}
 nav ol{list-style:none;margin:0;padding:0;border-left:1px solid var(--line)}nav a{display:block;padding:.2rem 0 .2rem .9rem;color:var(--quiet);text-decoration:none}nav a:hover{color:var(--link)}}
-@page{size:A4;margin:16mm 15mm}
+@page{size:A4;margin:16mm 15mm;@bottom-right{content:counter(page);font:9pt sans-serif;color:#4a5058}}
 @media print{body{font-size:10.5pt}.layout{display:block;max-width:none;padding:0}nav,.csv{display:none}.wide{display:block}.narrow{display:none}
 h1{font-size:18pt}h2{font-size:13pt;margin-top:1.5rem;break-after:avoid}h3{break-after:avoid}
 figure,tr,dl>div,ul.warnings li{break-inside:avoid}caption{break-after:avoid}thead{display:table-header-group}

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 
 #include "record/files.hpp"
 #include "report/front.hpp"
@@ -45,9 +46,11 @@ bool add_by_type(Page& page, const Record& record, const std::vector<Response>& 
 
 void add_records(Page& page, const RunData& run) {
   std::vector<Response> responses;
+  std::set<std::string> told;  // several outputs of a block often carry the same warning
   for (const auto& record : run.records) {
     page.open_section(record.key, kind_of(record.type));
-    for (const auto& warning : record.texts("warnings")) page.note(warning);
+    for (const auto& warning : record.texts("warnings"))
+      if (told.insert(warning).second) page.note(warning);
     if (!add_by_type(page, record, responses)) add_any(page, record);
     if (auto response = read_response(record)) responses.push_back(std::move(*response));
     page.close_section();

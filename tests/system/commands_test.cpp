@@ -128,7 +128,7 @@ TEST_CASE("the bash completion is a script that bash accepts and that completes 
   const Folder folder;
   folder.write("completion", run_bodeflow({"completion", "bash"}).out);
   const auto ended = bodeflow::test::run_program(
-      {"bash", "-c", "source completion; COMP_WORDS=(bodeflow re); COMP_CWORD=1; _bodeflow; echo ${COMPREPLY[@]}"},
+      {"bash", "-c", "source completion; COMP_WORDS=(bodeflow rer); COMP_CWORD=1; _bodeflow; echo ${COMPREPLY[@]}"},
       folder.path());
   CHECK(ended.exit_code == 0);
   CHECK(ended.out == "rerun\n");

@@ -5,7 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "acquisition/csv.hpp"
+#include "acquisition/open_table.hpp"
+#include "acquisition/scan.hpp"
 #include "catch.hpp"
 #include "folder.hpp"
 #include "plugins/block_driver.hpp"
@@ -64,12 +65,14 @@ TEST_CASE("output.csv: what is written is read back bit for bit, with names, uni
   auto reader = acquisition::open_table((folder.path() / "signals.csv").string());
   REQUIRE(reader);
   const std::vector<std::size_t> selected = {1, 2, 3};
-  const auto summary = (*reader)->scan(selected, {});
+  const auto time = acquisition::find_time_column(**reader, selected, {});
+  REQUIRE(time);
+  const auto summary = acquisition::scan_table(**reader, selected, *time, {}, {});
   REQUIRE(summary);
   CHECK(summary->rate == Rate(2500, 1));
   CHECK((*reader)->columns()[1].name == "iq");
   CHECK((*reader)->columns()[3].unit == "rad");
-  REQUIRE((*reader)->start(selected));
+  REQUIRE((*reader)->start(selected, 0));
   Channels got(3, std::vector<double>(rows));
   REQUIRE((*reader)->read(std::vector<double*>{got[0].data(), got[1].data(), got[2].data()}, rows).value() == rows);
   CHECK(got == sent);

@@ -75,6 +75,24 @@ TEST_CASE("report in a browser: the console stays empty and the page prints") {
   CHECK(pdf.size() > 50'000);
 }
 
+TEST_CASE("report in a browser: the measure sees what it looks for") {
+  if (!has_browser()) return;
+  const Folder folder;
+  const auto page =
+      folder.write("bad.html",
+                   "<!DOCTYPE html><html><head></head><body><main><div style='width:900px'>wide</div>"
+                   "<svg viewBox='0 0 100 100' width='100' height='100'><title>t</title><circle cx='NaN' cy='1' r='2'/>"
+                   "<text x='10' y='50'>one</text><text x='12' y='52'>two</text><text x='95' y='90'>outside</text></svg>"
+                   "<img alt='x'></main></body></html>");
+  const auto found = measured(page, 390, false);
+  INFO(found.dump(1));
+  CHECK(found["page_width"] > found["window_width"]);
+  CHECK(found["bad_numbers"].size() == 1);
+  CHECK(found["outside"] == nlohmann::json{"t: outside"});
+  CHECK(found["overlapping"] == nlohmann::json{"t: one | two"});
+  CHECK(found["active"] == 1);
+}
+
 TEST_CASE("report in a browser: hostile names run nothing") {
   if (!has_browser()) return;
   const Folder folder;

@@ -191,6 +191,8 @@ void Multisine::resolve(Facts& f) {
 void Multisine::note_signal(StreamFacts& facts) {
   const double period_s = static_cast<double>(design_.period) / rate_.hz();
   facts.notes["excitation.period"] = {period_s};
+  if (experiment_periods_ > 0 && length_ / design_.period != experiment_periods_)
+    facts.notes["excitation.experiment"] = {static_cast<double>(experiment_periods_) * period_s};
   const bool many = design_.lines.size() > kMostNotedLines;
   if (!many) {
     std::vector<double>& frequencies = facts.notes["excitation.frequencies"];

@@ -92,7 +92,7 @@ void Linear::resolve(Facts& f) {
 
 /// A linear plant keeps the lines of its excitation, not their amplitudes.
 void Linear::state_notes(const StreamFacts& u, StreamFacts& y) const {
-  for (const char* name : {"excitation.period", "excitation.frequencies"}) {
+  for (const char* name : {"excitation.period", "excitation.experiment", "excitation.frequencies"}) {
     if (u.notes.count(name) != 0) y.notes[name] = u.note(name);
   }
   std::vector<double>& modes = y.notes["plant.modes"] = u.note("plant.modes");

@@ -37,6 +37,7 @@ class Adviser {
   std::vector<Remark> all() {
     duration();
     period();
+    experiment();
     band();
     lines_asked_for();
     modes();
@@ -88,6 +89,19 @@ class Adviser {
     } else if (std::round(ratio) > 1.0) {
       tell("the period holds " + number(std::round(ratio)) + " periods of the excitation: lines between its own are not excited");
     }
+  }
+
+  void experiment() {
+    const std::vector<double> note = excitation_.note("excitation.experiment");
+    const Schedule& s = p_.schedule;
+    if (note.empty() || !s.starts.empty() || periods_ == 0) return;
+    const double samples = note.front() * rate_;
+    const auto taken = static_cast<double>((s.skip + periods_) * s.period);
+    if (std::abs(taken - samples) <= kEqual * samples) return;
+    warn("the phases of the excitation change after each " + number(samples) + " samples, and an experiment is taken to be " +
+         number(taken) + " (skip and periods): set periods to " +
+         number(std::round(samples / static_cast<double>(s.period)) - static_cast<double>(s.skip)) +
+         ", experiments and realisations as the excitation has them");
   }
 
   void band() {

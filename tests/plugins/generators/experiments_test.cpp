@@ -178,6 +178,17 @@ TEST_CASE("a multisine tells its period, lines, amplitudes and crest factor") {
   CHECK(notes.at("excitation.amplitudes")[0] == Approx(0.6));
   CHECK(notes.at("excitation.amplitudes")[1] == Approx(0.8));
   CHECK(notes.at("excitation.crest_factor")[0] == Approx(1.4 * std::sqrt(2.0)));
+  CHECK(notes.count("excitation.experiment") == 0);
+}
+
+TEST_CASE("a multisine tells after which time its phases change") {
+  LoadedBlock block("generators.multisine");
+  block.set("sample_rate", 1e3).set("period", std::int64_t{100}).set("lines.list", std::vector<std::int64_t>{2, 5});
+  block.set("experiment_periods", std::int64_t{3}).set("realisations", std::int64_t{4}).set("phases", "random");
+  block.configure();
+  const auto notes = block.resolve()[0].notes;
+  REQUIRE(notes.count("excitation.experiment") == 1);
+  CHECK(notes.at("excitation.experiment")[0] == Approx(0.3));
 }
 
 TEST_CASE("what depends on the run's seed is not told before the run") {

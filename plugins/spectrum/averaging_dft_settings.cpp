@@ -51,6 +51,12 @@ void describe_lines(Describe& d) {
           "Default: 0 where lines are named, else 0.3");
 }
 
+std::int64_t period_of(const Parameters& p) {
+  const std::int64_t period = p.integer("period");
+  if (period < 3 || period > kLongestPeriod) fail("period " + std::to_string(period) + "; allowed: 3 to 100000000");
+  return period;
+}
+
 LineChoice line_choice(const Parameters& p, std::int64_t period) {
   const std::int64_t highest = (period - 1) / 2;
   const bool ranged = p.has("lines.first") || p.has("lines.last") || p.given("lines.step");
@@ -129,10 +135,7 @@ void describe_averaging_dft_settings(Describe& d) {
 
 AveragingDftSettings averaging_dft_settings(const Parameters& p) {
   AveragingDftSettings s;
-  s.schedule.period = p.integer("period");
-  if (s.schedule.period < 3 || s.schedule.period > kLongestPeriod) {
-    fail("period " + std::to_string(s.schedule.period) + "; allowed: 3 to 100000000");
-  }
+  s.schedule.period = period_of(p);
   s.schedule.skip = p.integer("skip");
   s.schedule.periods = p.has("periods") ? p.integer("periods") : 0;
   s.schedule.realisations = p.integer("realisations");

@@ -25,8 +25,10 @@ void describe_averaging_dft_settings(Describe& d);
 /// The settings that `p` gives; fails with what contradicts what.
 AveragingDftSettings averaging_dft_settings(const Parameters& p);
 
-/// Describes the parameters of a choice of lines, and reads it for a period of N samples. `fallback`: the threshold where no line
-/// is named.
+/// The parameter `period`, in its range.
+std::int64_t period_of(const Parameters& p);
+
+/// Describes the parameters of a choice of lines, and reads it for a period of N samples.
 void describe_lines(Describe& d);
 LineChoice line_choice(const Parameters& p, std::int64_t period);
 

@@ -36,8 +36,9 @@ void SpectralMatrixBlock::describe(Describe& d) {
 }
 
 void SpectralMatrixBlock::configure(const Parameters& p) {
-  period_ = p.integer("period");
+  period_ = period_of(p);
   shift_ = p.has("shift") ? p.integer("shift") : period_;
+  if (shift_ < 1) fail("shift " + std::to_string(shift_) + "; allowed: 1 and above");
   skip_ = p.integer("skip");
   choice_ = line_choice(p, period_);
 }

@@ -261,6 +261,7 @@ class Wiring {
     keep(left, kinds.front());
     keep(right, kinds.front());
     prefer_needed(right);
+    if (kinds.front() == BF_MESSAGE) left.choices.resize(1);  // of several records the first is the block's result
     if (left.choices.size() > 1) return ambiguous(left, true);
     return right.choices.size() > 1 ? ambiguous(right, false) : true;
   }

@@ -108,12 +108,10 @@ std::optional<MessageOutput> find_message_output(const EndText& end, const std::
       report.add(end.spot, fmt::format("'{}.{}' is a stream: only records pass from phase to phase", end.block, end.port));
       return {};
     }
-  } else if (outputs.size() == 1) {
+  } else if (!outputs.empty()) {
     port = outputs.front();
   } else {
-    report.add(end.spot, outputs.empty() ? fmt::format("block '{}' sends no records", end.block)
-                                         : fmt::format("block '{}' has several message outputs: {}; write which", end.block,
-                                                       listed(port_names(outputs))));
+    report.add(end.spot, fmt::format("block '{}' sends no records", end.block));
   }
   if (port == nullptr) return {};
   return MessageOutput{&*phase, &phase->blocks[static_cast<std::size_t>(index)], port};

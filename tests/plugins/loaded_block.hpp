@@ -85,6 +85,7 @@ class LoadedBlock {
   /// The facts of the outputs.
   const std::vector<StreamFacts>& resolve() {
     std::vector<bf_stream_facts> in(ports(BF_IN), bf_stream_facts{}), out(ports(BF_OUT), bf_stream_facts{});
+    std::list<std::vector<bf_note>> notes;
     input_flows_.assign(in.size(), {sizeof(bf_flow), 1, 0, nullptr});
     output_flows_.assign(out.size(), {sizeof(bf_flow), 1, 0, nullptr});
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
@@ -92,6 +93,10 @@ class LoadedBlock {
       in[i] = {sizeof in[i], f.known,  f.element,      static_cast<std::uint32_t>(f.channels),
                f.rate.c(),   f.length, f.unit.c_str(), "",
                nullptr,      nullptr,  nullptr,        0};
+      auto& noted = notes.emplace_back();
+      for (const auto& [name, numbers] : f.notes) noted.push_back({name.c_str(), numbers.data(), numbers.size()});
+      in[i].notes = noted.data();
+      in[i].note_count = noted.size();
     }
     for (std::size_t i = inputs_.size(); i < in.size(); ++i) in[i].unit = in[i].clock = "";
     bf_resolution r{sizeof r,

@@ -174,7 +174,6 @@ R"y(g.yaml:6:9: 'two' is no earlier phase; earlier phases: none
 g.yaml:7:9: phase 'one' can't refer to itself here; earlier phases: none
 g.yaml:11:9: 'oen' is no earlier phase (did you mean 'one'?); earlier phases: one
 g.yaml:12:9: unknown block 'tunr' (did you mean 'tuner'?)
-g.yaml:13:9: block 'fit' has several message outputs: model, trace; write which
 g.yaml:14:9: block 'sine' sends no records
 g.yaml:15:9: 'sine.out' is a stream: only records pass from phase to phase
 g.yaml:16:9: '$one.tuner.changes' sends records of type 'parameter_change', 'fit.data' takes 'frequency_response'

@@ -338,7 +338,7 @@ TEST_CASE("experiments: advice before a run") {
         "it");
   CHECK(wrong[4] == "warning: the plant settles in 0.25 s, and 0 s are skipped: set skip to 2, or transient: remove");
   u.notes["excitation.experiment"] = {0.5};
-  CHECK(advice(100, 3)[3] ==
+  CHECK(advice(100, 3)[2] ==
         "warning: the phases of the excitation change after each 500 samples, and an experiment is taken to be 1000 (skip and "
         "periods): set periods to 2, experiments and realisations as the excitation has them");
   u.notes["excitation.experiment"] = {1.0};

@@ -5,6 +5,7 @@
 
 #include "import_report.hpp"
 #include "open_table.hpp"
+#include "overlooked_time.hpp"
 
 namespace bodeflow::acquisition {
 namespace {
@@ -94,6 +95,8 @@ void FileBlock::scan(const Timing& timing) {
   const ImportReport report = report_import(*reader_, selected_, *time, summary_);
   log_info(report.found);
   for (const std::string& warning : report.warnings) log_warning(warning);
+  if (*time || timing.ignore_time_column) return;
+  for (const std::string& warning : overlooked_times(*reader_, selected_, summary_)) log_warning(warning);
 }
 
 std::size_t FileBlock::place_of(std::size_t column) {

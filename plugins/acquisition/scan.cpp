@@ -107,6 +107,9 @@ Expected<void> Scan::find_rate() {
   const auto unnamed =
       std::find_if(columns.begin(), columns.end(), [](const Column& c) { return is_named_time(c) && c.unit.empty(); });
   if (unnamed != columns.end()) text += ", or if '" + unnamed->header + "' holds time its unit, such as time_unit: s";
+  const auto timed =
+      std::find_if(columns.begin(), columns.end(), [](const Column& c) { return seconds_per(c.unit).has_value(); });
+  if (timed != columns.end()) text += ", or if '" + timed->header + "' holds time name it with time_column";
   return unexpected(text);
 }
 

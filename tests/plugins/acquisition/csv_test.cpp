@@ -102,6 +102,9 @@ TEST_CASE("CSV: times that are not equally spaced are refused with the line and 
       {"a time column without its unit", "t,u\n0,1\n1,1\n",
        "F: no sampling rate and no time column (`t` or `time` with a unit of time, such as `t [s]`); give the sampling rate, "
        "such as rate: 2500 Hz, or if 't' holds time its unit, such as time_unit: s"},
+      {"a column with a unit of time and another name", "Zeit [ms],u\n0,1\n1,1\n",
+       "F: no sampling rate and no time column (`t` or `time` with a unit of time, such as `t [s]`); give the sampling rate, "
+       "such as rate: 2500 Hz, or if 'Zeit [ms]' holds time name it with time_column"},
   };
   for (const Broken& c : cases) {
     INFO(c.what);

@@ -177,3 +177,64 @@ TEST_CASE("file block: parts, time units and data sets that make no sense are re
   CHECK(facts[0].rate == Rate(1000, 1));
   CHECK(facts[0].length == 5);
 }
+
+TEST_CASE("file block: a column that holds time under another name is compared with the rate") {
+  const auto warnings = [](const std::string& text, double rate, const std::string& time_check = "check") {
+    const TemporaryFile file(".csv", text);
+    BlockDriver<FileBlock> block;
+    block.set("file", file.path()).set("rate", rate).set("time", time_check).set("columns", std::vector<std::string>{"u"});
+    block.configure();
+    std::vector<std::string> found;
+    const std::string begin = "warning: " + file.path() + ":";
+    for (const std::string& line : block.log()) {
+      if (line.rfind(begin, 0) == 0) found.push_back(line.substr(begin.size()));
+    }
+    return found;
+  };
+  const auto rows = [](const std::string& header, int count, int lost, double step) {
+    std::string text = header + "\n";
+    for (int n = 0; n < count; ++n) {
+      char line[64];
+      std::snprintf(line, sizeof line, "%.1f;%d\n", step * (n + (n >= lost ? 1 : 0)), n % 3);
+      text += line;
+    }
+    return text;
+  };
+  using Lines = std::vector<std::string>;
+  const std::string regular = rows("Zeit [ms];u [V]", 5000, 5000, 0.4);
+  CHECK(warnings(regular, 2400.0) == Lines{" column 'Zeit [ms]' steps by 0.4 ms (2500 Hz), but rate is 2400 Hz: name it with "
+                                           "time_column, or correct rate"});
+  CHECK(warnings(regular, 2500.0).empty());
+  CHECK(warnings(regular, 2400.0, "ignore").empty());
+  const Lines gap = warnings(rows("Zeit [ms];u [V]", 5000, 4990, 0.4), 2500.0);
+  REQUIRE(gap.size() == 1);
+  CHECK(gap[0].rfind(" column 'Zeit [ms]' rises as time does, but not in equal steps (", 0) == 0);
+  CHECK(
+      gap[0].find(".csv:4992: gap of 1 sample after 1.9956 s: a step of 0.0008 s where samples are 0.0004 s apart): if it holds "
+                  "time, name it with time_column") != std::string::npos);
+  CHECK(warnings("delay [ms],u\n3,1\n2,1\n4,2\n5,2\n6,0\n7,1\n", 10.0).size() == 0);
+  CHECK(warnings("when_s,u\nnow,1\n2,1\n4,2\n5,2\n6,0\n7,1\n", 10.0).size() == 0);
+}
+
+TEST_CASE("file block: a rate that the file states is compared with a column of time in the same data") {
+  const TemporaryFile file(".h5");
+  std::vector<double> clock(100), u(100);
+  for (std::size_t n = 0; n < clock.size(); ++n) {
+    clock[n] = 2.0 * static_cast<double>(n);
+    u[n] = static_cast<double>(n % 7);
+  }
+  test::Hdf5Writer(file.path())
+      .put("u", u)
+      .put("stamp", clock)
+      .put("short", {1, 2, 3, 4, 5, 6})
+      .attribute("stamp", "unit", "ms")
+      .attribute("short", "unit", "ms")
+      .attribute("u", "rate", 400.0);
+  BlockDriver<FileBlock> block;
+  block.set("file", file.path()).set("columns", std::vector<std::string>{"u"});
+  block.configure();
+  REQUIRE(block.log().size() == 2);
+  CHECK(block.log()[1] == "warning: " + file.path() +
+                              ": column 'stamp' steps by 2 ms (500 Hz), but the file states 400 Hz: if it "
+                              "holds time, name it with time_column");
+}

@@ -116,8 +116,10 @@ void DelayBlock::receive(int, const RecordView& record, Io& io) {
   r.set("slope", slope_);
   r.set("input_name", data->input_names[static_cast<std::size_t>(input)]);
   r.set("output_name", data->output_names[static_cast<std::size_t>(output)]);
-  r.set("warnings", warnings_of(*e));
+  const std::vector<std::string> warnings = warnings_of(*e);
+  r.set("warnings", warnings);
   io.emit(out, r);
+  for (const std::string& warning : warnings) log_warning(warning);
 }
 
 }  // namespace bodeflow::spectrum

@@ -213,7 +213,9 @@ void LocalPolynomialBlock::finish(Io& io) {
   for (std::int64_t k = range.first; k <= range.last; k += from.step) lines.push_back(k);
   const auto estimate = local_polynomial(spectra(from.samples), lines, from.settings);
   if (!estimate) fail(estimate.error().text);
+  from.warnings = local_polynomial_warnings(*estimate, from);
   io.emit(out, local_polynomial_record(*estimate, from));
+  for (const std::string& warning : from.warnings) log_warning(warning);
 }
 
 void LocalPolynomialBlock::deactivate() {

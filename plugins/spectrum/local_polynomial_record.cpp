@@ -83,7 +83,7 @@ RecordBuilder local_polynomial_record(const LocalPolynomialEstimate& e, const Lo
   d.input_names = from.inputs.names;
   d.output_names = from.outputs.names;
   d.response_units = response_units(from.outputs.units, from.inputs.units);
-  d.warnings = local_polynomial_warnings(e, from);
+  d.warnings = from.warnings;
   d.realisations = 1;
   d.sample_rate_hz = from.sample_rate_hz;
   d.degrees_of_freedom = e.degrees_of_freedom;

@@ -16,11 +16,11 @@ struct LocalPolynomialOrigin {
   double sample_rate_hz = 1.0;
   std::int64_t samples = 0;
   std::int64_t step = 1;              ///< from line to line of the estimate
-  std::vector<std::string> warnings;  ///< about the signals
+  std::vector<std::string> warnings;  ///< what the record says of them
 };
 
-/// What spoils the estimate, each with what to do: lines without excitation, resonances narrower than a fit, an input that stands
-/// little above its noise.
+/// What spoils the estimate, each with what to do, behind the warnings that stand already: lines without excitation, resonances
+/// narrower than a fit, an input that stands little above its noise.
 std::vector<std::string> local_polynomial_warnings(const LocalPolynomialEstimate& estimate, const LocalPolynomialOrigin& from);
 
 /// The record `frequency_response` of the estimate, with noise and transient levels.

@@ -20,10 +20,10 @@ namespace bodeflow::spectrum {
 /// disagrees; more such entries than chance and the correlation of neighbouring lines explain (mean + 4 sqrt(10 mean) + 2), or
 /// one below 0.001 in all entries together, is a warning that names experiment and lines.
 ///
-/// Attributes: periods, realisations and dropped samples are added, warnings collected, `form` is "merged" where they differ;
-/// `degrees_of_freedom` is the smallest of all lines, the confidence radii have those of their own line.
-/// Wrong where the experiments share noise or data (records of one growing average), and where the operating point differs and
-/// the plant is not linear.
+/// Attributes: periods, realisations and dropped samples are added, warnings collected (those of the experiments, then its own),
+/// `form` is "merged" where they differ; `degrees_of_freedom` is the smallest of all lines, the confidence radii have those of
+/// their own line. Wrong where the experiments share noise or data (records of one growing average), and where the operating
+/// point differs and the plant is not linear.
 ///
 /// References: W. G. Cochran, Biometrics 10 (1954) 101, doi:10.2307/3001666; P. Meier, Variance of a weighted mean,
 /// Biometrics 9 (1953) 59, doi:10.2307/3001633; F. E. Satterthwaite, doi:10.2307/3002019.

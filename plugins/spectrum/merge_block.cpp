@@ -30,6 +30,10 @@ void MergeBlock::finish(Io& io) {
   RecordBuilder record = write_response(*merged);
   record.set("experiments", experiments_.size());
   io.emit(out, record);
+  // Those of the experiments come first; whoever made them has told them.
+  std::size_t told = 0;
+  for (const ResponseData& experiment : experiments_) told += experiment.warnings.size();
+  for (std::size_t w = told; w < merged->warnings.size(); ++w) log_warning(merged->warnings[w]);
 }
 
 void MergeBlock::reset() { experiments_.clear(); }

@@ -121,7 +121,7 @@ void SteppedSineBlock::resolve(Facts& f) {
 
 void SteppedSineBlock::advise(const Facts& f, Advice& a) {
   const auto settling = f.in(output).note("plant.settling_time");
-  if (settling.empty()) return;
+  if (settling.empty() || !std::isfinite(settling[0])) return;
   if (max_time_s_ > 0.0 && max_time_s_ < settling[0]) {
     a.warn("the plant settles in " + short_number(settling[0]) + " s, max_time is " + short_number(max_time_s_) +
            " s: responses will be taken before that; raise max_time");

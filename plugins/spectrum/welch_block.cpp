@@ -119,7 +119,7 @@ void WelchBlock::advise(const Facts& f, Advice& a) {
     a.warn("the excitation repeats each " + short_number(period[0]) +
            " s: spectrum.averaging_dft over whole periods has no leakage and needs no window");
   const auto settling = y.note("plant.settling_time");
-  if (!settling.empty() && settling[0] > segment_s)
+  if (!settling.empty() && std::isfinite(settling[0]) && settling[0] > segment_s)
     a.warn("leakage: a segment lasts " + short_number(segment_s) + " s, the plant needs " + short_number(settling[0]) +
            " s to settle; take segments of " + short_number(std::ceil(2.0 * settling[0] * rate)) +
            " samples or more, or spectrum.local_polynomial");
@@ -135,6 +135,7 @@ void WelchBlock::activate(const Activation&) {
 void WelchBlock::reset() {
   welch_->clear();
   watches_.assign(static_cast<std::size_t>(frame_.cols()), {});
+  warnings_.clear();
   filled_ = 0;
   taken_ = sent_ = 0;
 }
@@ -184,12 +185,15 @@ void WelchBlock::send(Io& io, std::uint64_t offset) {
   }
   const auto estimate = welch_->estimate(form_, range_.first, range_.last);
   if (!estimate) fail(estimate.error().text);
+  from.warnings = welch_warnings(*estimate, from);
   io.emit(out, welch_record(*estimate, from), offset);
+  warnings_ = std::move(from.warnings);
   sent_ = welch_->averages();
 }
 
 void WelchBlock::finish(Io& io) {
   if (sent_ == 0 || sent_ != welch_->averages()) send(io, io.count());
+  for (const std::string& warning : warnings_) log_warning(warning);
 }
 
 void WelchBlock::deactivate() { welch_.reset(); }

@@ -40,11 +40,12 @@ class WelchBlock final : public Block {
   LineRange range_;
 
   std::optional<Welch> welch_;
-  std::vector<SampleWatch> watches_;  // one a channel
-  Eigen::MatrixXd frame_;             // the newest segment; columns: inputs, outputs
-  Eigen::Index filled_ = 0;           // rows of it
-  std::int64_t taken_ = 0;            // samples
-  std::int64_t sent_ = 0;             // averages in the last record
+  std::vector<SampleWatch> watches_;   // one a channel
+  Eigen::MatrixXd frame_;              // the newest segment; columns: inputs, outputs
+  Eigen::Index filled_ = 0;            // rows of it
+  std::int64_t taken_ = 0;             // samples
+  std::int64_t sent_ = 0;              // averages in the last record
+  std::vector<std::string> warnings_;  // in it
 };
 
 }  // namespace bodeflow::spectrum

@@ -14,7 +14,7 @@ struct WelchOrigin {
   WelchSettings settings;
   WelchForm form = WelchForm::h1;
   Signals inputs, outputs;
-  std::vector<std::string> warnings;  ///< about the signals
+  std::vector<std::string> warnings;  ///< what the record says of them
 };
 
 /// "h1", "h2", "hv".
@@ -23,7 +23,8 @@ std::string name_of(WelchForm form);
 /// Linewidth of the estimate in Hz: the equivalent noise bandwidth of the window.
 double resolution_hz(const WelchSettings& settings);
 
-/// What spoils the estimate, each with what to do: few averages, low coherence, resonances narrower than the resolution shows.
+/// What spoils the estimate, each with what to do, behind the warnings that stand already: few averages, low coherence,
+/// resonances narrower than the resolution shows.
 std::vector<std::string> welch_warnings(const WelchEstimate& estimate, const WelchOrigin& from);
 
 /// The record `frequency_response` of the estimate, with coherence and densities.

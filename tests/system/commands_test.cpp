@@ -133,3 +133,17 @@ TEST_CASE("the bash completion is a script that bash accepts and that completes 
   CHECK(ended.exit_code == 0);
   CHECK(ended.out == "rerun\n");
 }
+
+TEST_CASE("bytes in a data file that are no UTF-8 spoil neither the JSON nor the terminal") {
+  const Folder folder;
+  folder.write("data.csv", "t [s],y\n0,1\n0.1,a\xff\n");
+  folder.write("graph.yaml",
+               "bodeflow: 1\nblocks:\n  in: {block: acquisition.file, file: data.csv}\n  out: {block: output.csv, file: o.csv}\n"
+               "connections: [in.out -> out.in]\n");
+  const auto ended = run_bodeflow({"check", "graph.yaml", "--json"}, folder.path());
+  CHECK(ended.exit_code == 3);
+  const auto printed = nlohmann::json::parse(ended.out);
+  REQUIRE(printed["problems"].size() == 1);
+  CHECK(printed["problems"][0]["text"].get<std::string>().find("is not a number") != std::string::npos);
+  CHECK(ended.err.find('\xff') == std::string::npos);
+}

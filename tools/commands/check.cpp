@@ -4,6 +4,7 @@
 
 #include "commands/command.hpp"
 #include "commands/plans.hpp"
+#include "console/json_output.hpp"
 #include "phases/run.hpp"
 
 namespace bodeflow::tools {
@@ -40,7 +41,7 @@ int check(const Session& session, const GraphOptions& options) {
     for (const auto& [block, said] : (*prepared)[i].advice)
       if (said.level < BF_LOG_WARNING) fmt::print("  {}: {}\n", block, said.text);
   }
-  if (options.json) fmt::print("{}\n", nlohmann::ordered_json{{"graph", options.file}, {"phases", phases}}.dump(2));
+  if (options.json) print_json(nlohmann::ordered_json{{"graph", options.file}, {"phases", phases}});
   return kDone;
 }
 

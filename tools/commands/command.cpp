@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "console/json_output.hpp"
+
 namespace bodeflow::tools {
 namespace {
 
@@ -77,7 +79,7 @@ int GraphOptions::reject(const Problems& problems) const {
     for (const auto& problem : problems)
       all.push_back(
           {{"file", problem.place.file}, {"line", problem.place.line}, {"column", problem.place.column}, {"text", problem.text}});
-    fmt::print("{}\n", nlohmann::ordered_json{{"graph", file}, {"problems", all}}.dump(2));
+    print_json(nlohmann::ordered_json{{"graph", file}, {"problems", all}});
   }
   return kRejected;
 }

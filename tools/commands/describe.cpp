@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "commands/command.hpp"
+#include "console/json_output.hpp"
 #include "plugins/description_json.hpp"
 
 namespace bodeflow::tools {
@@ -111,7 +112,7 @@ int describe(const Session& session, const std::string& id, bool as_json) {
     return kUsage;
   }
   if (as_json)
-    fmt::print("{}\n", to_json(*block).dump(2));
+    print_json(to_json(*block));
   else
     print(*block, *registry.plugin_of(id));
   return kDone;

@@ -7,6 +7,7 @@
 
 #include "commands/command.hpp"
 #include "commands/vector_level.hpp"
+#include "console/json_output.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -85,7 +86,7 @@ int doctor(const Session& session, bool as_json) {
       fmt::print("{:<5} {:<18} {}{}\n", finding.state, finding.what, finding.found,
                  finding.advice.empty() ? "" : "; " + finding.advice);
   }
-  if (as_json) fmt::print("{}\n", all.dump(2));
+  if (as_json) print_json(all);
   return bad ? kRunFailed : kDone;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "console/console.hpp"
+#include "console/json_output.hpp"
 
 namespace bodeflow::tools {
 
@@ -28,7 +29,7 @@ void print_plans(const graph::Graph& graph, const std::vector<phases::Prepared>&
     if (!phase.name.empty()) fmt::print("{}\n", bold("phase " + phase.name));
     fmt::print("{}", plan::to_text(phase, facts, plan));
   }
-  if (as_json) fmt::print("{}\n", all.dump(2));
+  if (as_json) print_json(all);
 }
 
 }  // namespace bodeflow::tools

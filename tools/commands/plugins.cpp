@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/command.hpp"
+#include "console/json_output.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -30,7 +31,7 @@ int list_plugins(const Session& session, bool as_json) {
       for (const auto& block : plugin.blocks) fmt::print("  {:<32} {}\n", block.id, block.summary);
     }
   }
-  if (as_json) fmt::print("{}\n", all.dump(2));
+  if (as_json) print_json(all);
   if (registry.plugins().empty()) say_warning("no plugins found; --path DIR or BODEFLOW_PLUGIN_PATH tells where they are");
   return refused ? kPlugin : kDone;
 }

@@ -5,6 +5,7 @@
 #include "commands/command.hpp"
 #include "commands/run_graph.hpp"
 #include "commands/vector_level.hpp"
+#include "console/json_output.hpp"
 #include "plugins/sha256.hpp"
 
 namespace bodeflow::tools {
@@ -100,9 +101,7 @@ int rerun(const Session& session, const RerunCommand& command) {
     return kRunFailed;
   }
   if (command.json)
-    fmt::print(
-        "{}\n",
-        nlohmann::ordered_json{{"directory", ran.directory.string()}, {"outputs", count}, {"different", different}}.dump(2));
+    print_json(nlohmann::ordered_json{{"directory", ran.directory.string()}, {"outputs", count}, {"different", different}});
   else if (different.empty())
     fmt::print("{} outputs, all identical bit for bit\nRun directory: {}\n", count, ran.directory.string());
   if (different.empty()) return kDone;

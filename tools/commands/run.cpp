@@ -5,6 +5,7 @@
 #include "commands/plans.hpp"
 #include "commands/run_graph.hpp"
 #include "commands/vector_level.hpp"
+#include "console/json_output.hpp"
 #include "console/summary.hpp"
 
 namespace bodeflow::tools {
@@ -51,7 +52,7 @@ int run(const Session& session, const RunCommand& command) {
   if (command.graph.json) {
     nlohmann::ordered_json printed = ran.result;
     printed["directory"] = ran.directory.string();
-    fmt::print("{}\n", printed.dump(2));
+    print_json(printed);
   } else if (ran.exit_code == kDone) {
     if (!graph->title.empty()) fmt::print("{}\n", bold(graph->title));
     print_summary(ran.result);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands/command.hpp"
+#include "console/json_output.hpp"
 
 namespace bodeflow::tools {
 
@@ -12,7 +13,7 @@ void add_schema(CLI::App& app, Session& session) {
   command->callback([&session] {
     session.action = [&session]() -> int {
       const Registry registry = session.open_registry();
-      fmt::print("{}\n", graph::schema(registry).dump(2));
+      print_json(graph::schema(registry));
       return kDone;
     };
   });

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <bodeflow/utf8.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -22,8 +23,21 @@ std::string painted(int file, const char* code, const std::string& text) {
   return coloured(file) ? fmt::format("\033[{}m{}\033[0m", code, text) : text;
 }
 
+/// Text whose bytes that are no UTF-8 (names from data files) are U+FFFD: a terminal may take them for commands.
+std::string valid(const std::string& text) {
+  std::string clean;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t length = 1;
+    while (length <= 4 && !is_text(std::string_view(text).substr(at, length))) ++length;
+    const bool fits = length <= 4;
+    clean += fits ? text.substr(at, length) : "\xEF\xBF\xBD";
+    at += fits ? length : 1;
+  }
+  return clean;
+}
+
 /// A lost terminal must not end a run: what can't be printed is left out.
-void print_error(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }
+void print_error(const std::string& text) { (void)std::fputs(valid(text).c_str(), stderr); }
 
 }  // namespace
 

@@ -15,9 +15,11 @@ namespace {
 
 /// The measurement that a graph needs, as a path below the shared data; "" for a graph that stands alone.
 std::string data_of(const std::string& graph) {
-  static const std::map<std::string, std::string> files{{"bench_distortion.yaml", "motorbench_two_mass/multisine_B.csv"},
-                                                        {"fine_steering_mirror.yaml", "fine_steering_mirror/fsm_300mV_train.csv"},
-                                                        {"silverbox.yaml", "silverbox/SNLS80mV.csv"}};
+  static const std::map<std::string, std::string> files{
+      {"bench_distortion.yaml", "motorbench_two_mass/multisine_B.csv"},
+      {"measured_frequency_response.yaml", "motorbench_two_mass/multisine_A.csv"},
+      {"fine_steering_mirror.yaml", "fine_steering_mirror/fsm_300mV_train.csv"},
+      {"silverbox.yaml", "silverbox/SNLS80mV.csv"}};
   const auto found = files.find(graph);
   return found == files.end() ? "" : found->second;
 }
@@ -29,15 +31,18 @@ fs::path shared_data() {
 
 std::vector<fs::path> graphs() {
   std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(BODEFLOW_SOURCE_DIR "/graphs/measuring"))
-    if (entry.path().extension() == ".yaml") found.push_back(entry.path());
+  for (const char* folder : {"first_steps", "measuring"})
+    for (const auto& entry : fs::directory_iterator(fs::path(BODEFLOW_SOURCE_DIR) / "graphs" / folder))
+      if (entry.path().extension() == ".yaml") found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
 }
 
 }  // namespace
 
-TEST_CASE("every graph of graphs/measuring runs as it stands, to the same bits for any chunk and thread count, with a report") {
+TEST_CASE(
+    "every graph of first_steps and measuring runs as it stands, to the same bits for any chunk and thread count, with a "
+    "report") {
   for (const fs::path& graph : graphs()) {
     std::vector<std::string> command{"run", graph.string()};
     if (const std::string data = data_of(graph.filename().string()); !data.empty()) {

@@ -148,6 +148,7 @@ bool is_levels(const Json& record) {
 
 void print_other(const Json& record) {
   for (const auto& [name, value] : record["attributes"].items()) {
+    if (name == "warnings") continue;  // the run has said them
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     fmt::print("  {:<20} {}\n", name, text.size() > 100 ? text.substr(0, 97) + "..." : text);
   }

@@ -79,6 +79,9 @@ Expected<bool> CsvReader::next_row_line() {
 }
 
 Expected<void> CsvReader::start(std::span<const std::size_t> selected, std::int64_t first_row) {
+  for (const std::size_t c : selected) {
+    if (const auto broken = header_.unreadable.find(c); broken != header_.unreadable.end()) return refuse(broken->second);
+  }
   std::vector<int> slots(header_.columns.size(), -1);
   for (std::size_t c = 0; c < selected.size(); ++c) slots[selected[c]] = static_cast<int>(c);
   values_.assign(selected.size(), 0.0);

@@ -28,12 +28,12 @@ Expected<void, TextError> check_names(const std::vector<Field>& fields, std::int
     return refuse(line, 1,
                   "no header: the first line holds numbers; begin the file with a line of names, such as 't [s],u [V],y [rad]'");
   }
-  std::map<std::string_view, std::size_t> seen;
+  std::map<std::string, std::size_t> seen;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const Field& f = fields[i];
     if (f.text.empty()) return refuse(line, f.column, "column " + std::to_string(i + 1) + " has no name");
-    if (!is_text(f.text)) return refuse(line, f.column, "the name of column " + std::to_string(i + 1) + " is not UTF-8 text");
-    const auto [before, fresh] = seen.emplace(f.text, i + 1);
+    if (!is_text(f.text)) continue;
+    const auto [before, fresh] = seen.emplace(printable(f.text), i + 1);
     if (!fresh) {
       return refuse(line, f.column,
                     "column name " + shown(f.text) + " stands twice: columns " + std::to_string(before->second) + " and " +
@@ -61,7 +61,14 @@ Expected<Header, TextError> read_header(LineReader& lines) {
   if (!fields) return {Unexpected<TextError>{fields.error()}};
   if (fields->size() > 1 && fields->back().text.empty() && !fields->back().quoted) fields->pop_back();
   if (auto done = check_names(*fields, header.line); !done) return {Unexpected<TextError>{done.error()}};
-  for (const Field& f : *fields) header.columns.push_back(parse_header(f.text));
+  for (const Field& f : *fields) {
+    header.columns.push_back(parse_header(printable(f.text)));
+    const std::size_t number = header.columns.size();
+    if (is_text(f.text)) continue;
+    header.unreadable[number - 1] = {
+        header.line, f.column,
+        "the name of column " + std::to_string(number) + ", " + shown(f.text) + ", is not UTF-8 text; save the file as UTF-8"};
+  }
   return header;
 }
 

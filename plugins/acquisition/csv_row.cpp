@@ -23,14 +23,6 @@ const char* without_plus(const char* p, const char* end) {
 
 }  // namespace
 
-std::string shown(std::string_view text) {
-  constexpr std::size_t kMost = 40;
-  std::string out = "'";
-  for (const char c : text.substr(0, kMost)) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
-  if (text.size() > kMost) out += "...";
-  return out + "'";
-}
-
 char find_separator(std::string_view header) {
   for (const char candidate : {';', '\t', ','}) {
     bool quoted = false;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "line_reader.hpp"
+#include "printable.hpp"
 
 namespace bodeflow::acquisition {
 
@@ -22,9 +23,6 @@ Expected<std::vector<Field>, TextError> split(std::string_view line, std::int64_
 /// The separator of a table with this header line: the first of `;`, tab, `,` that stands in it outside of quotes; `,` if none
 /// does.
 char find_separator(std::string_view header);
-
-/// The text as a message shows it: quoted, shortened, control characters as `?`.
-std::string shown(std::string_view text);
 
 /// Reads rows of numbers. Locale-free and correctly rounded (std::from_chars).
 class RowParser {

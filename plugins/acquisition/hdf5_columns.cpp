@@ -4,6 +4,7 @@
 #include <bodeflow/utf8.hpp>
 #include <map>
 
+#include "printable.hpp"
 #include "sampling.hpp"
 
 namespace bodeflow::acquisition {
@@ -43,7 +44,7 @@ std::string why_not_numbers(hid_t type) {
   for (int i = 0; i < members && i < 8; ++i) {
     char* name = H5Tget_member_name(type, static_cast<unsigned>(i));
     if (name == nullptr) continue;
-    names += (names.empty() ? "" : ", ") + std::string(name);
+    names += (names.empty() ? "" : ", ") + printable(name);
     H5free_memory(name);
   }
   if (names == "r, i" || names == "real, imag") return "is complex; store its real and imaginary part as columns of their own";
@@ -86,8 +87,8 @@ std::string parent_of(const std::string& path) {
 }
 
 std::string Lister::shown(const std::string& path, bool matlab) const {
-  if (recording_) return path.substr(std::string("streams/").size());
-  std::string name = path;
+  if (recording_) return printable(path.substr(std::string("streams/").size()));
+  std::string name = printable(path);
   if (matlab) {
     for (char& c : name) c = c == '/' ? '.' : c;
   }
@@ -104,7 +105,8 @@ Rate Lister::rate_at(hid_t object, const std::string& path) {
     if (value.size() != 1) continue;
     const Rate rate = Rate::from_hz(value.front());
     if (!rate.known())
-      fail("attribute '" + std::string(name) + "' of '" + path + "' is no sampling rate: " + number_text(value.front()));
+      fail("attribute '" + std::string(name) + "' of '" + printable(path) +
+           "' is no sampling rate: " + number_text(value.front()));
     return rate;
   }
   return {};
@@ -149,7 +151,7 @@ void Lister::add_columns(const std::string& path, hid_t dataset, const std::vect
     Column column;
     column.header = column.name = shown(path, matlab);
     if (columns > 1) column.header = column.name += "[" + std::to_string(c + 1) + "]";
-    if (c < names.size() && names.size() == columns && !names[c].empty() && is_text(names[c])) column.name = names[c];
+    if (c < names.size() && names.size() == columns && !names[c].empty()) column.name = printable(names[c]);
     const std::string& own = units.size() == columns ? units[c] : unit;
     if (is_unit(own)) column.unit = own;
     column.rate = rate;
@@ -200,8 +202,11 @@ Hdf5Columns Lister::list() {
     }
     if (o.type != H5O_TYPE_DATASET) continue;
     if (std::find(sparse_.begin(), sparse_.end(), parent_of(o.path)) != sparse_.end()) continue;
-    if (!is_text(o.path)) continue;
-    add(o.path);
+    if (is_text(o.path)) {
+      add(o.path);
+    } else {
+      leave(o.path, false, "has a name that is not UTF-8 text");
+    }
   }
   for (std::size_t i = 0; i < found_.columns.size(); ++i) {
     const auto stated = stated_.find(parent_of(found_.places[i].path));

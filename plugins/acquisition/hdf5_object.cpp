@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "printable.hpp"
+
 namespace bodeflow::acquisition::h5 {
 namespace {
 
@@ -13,7 +15,7 @@ herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* text) {
 [[noreturn]] void fail_with_reason(const std::string& what) {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
-  fail(reason.empty() ? what : what + ": " + reason);
+  fail(printable(reason.empty() ? what : what + ": " + reason));
 }
 
 /// An attribute that is there, its space, and how many values it has.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hdf5_columns.hpp"
+#include "printable.hpp"
 
 namespace bodeflow::acquisition {
 namespace {
@@ -73,7 +74,7 @@ Handle open_dataset(hid_t file, const Source& s, hsize_t& room) {
   const hsize_t bytes = chunk_bytes(dataset.id(), s);
   if (bytes == 0) return dataset;
   if (bytes > room) {
-    fail("data set '" + s.path + "' is stored in chunks of which " + std::to_string(bytes >> 20) +
+    fail("data set '" + printable(s.path) + "' is stored in chunks of which " + std::to_string(bytes >> 20) +
          " MiB are needed at a time; all columns together may need " + std::to_string(kMostCache >> 20) +
          " MiB; read fewer columns, or store them in smaller chunks");
   }

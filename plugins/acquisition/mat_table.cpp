@@ -7,6 +7,7 @@
 
 #include "mat_layout.hpp"
 #include "mat_variable.hpp"
+#include "printable.hpp"
 
 namespace bodeflow::acquisition {
 namespace {
@@ -133,9 +134,10 @@ void MatReader::add_columns(const MatArray& array, const MatExtent& extent) {
   const bool vector = array.shape[0] == 1 || array.shape[1] == 1;
   const auto rows = static_cast<std::int64_t>(vector ? array.count : array.shape[0]);
   const std::size_t columns = vector ? 1 : array.shape[1];
+  const std::string name = printable(array.name);
   for (std::size_t c = 0; c < columns; ++c) {
     Column column;
-    column.header = column.name = vector ? array.name : array.name + "[" + std::to_string(c + 1) + "]";
+    column.header = column.name = vector ? name : name + "[" + std::to_string(c + 1) + "]";
     column.rows = rows;
     columns_.push_back(std::move(column));
     places_.push_back({extent, array.name, array.type, array.position, static_cast<std::int64_t>(c) * rows, rows});
@@ -143,7 +145,11 @@ void MatReader::add_columns(const MatArray& array, const MatExtent& extent) {
 }
 
 Expected<void> MatReader::add(const MatArray& array, const MatExtent& extent, MatStream& stream) {
-  if (array.name.empty() || !is_text(array.name)) return {};
+  if (array.name.empty()) return {};
+  if (!is_text(array.name)) {
+    leftovers_.push_back({printable(array.name), "has a name that is not UTF-8 text"});
+    return {};
+  }
   std::string why = array.why;
   if (why.empty() && array.count == 1) {
     const auto taken = add_rate(array, stream);
@@ -159,7 +165,7 @@ Expected<void> MatReader::add(const MatArray& array, const MatExtent& extent, Ma
   if (why.empty()) {
     add_columns(array, extent);
   } else {
-    leftovers_.push_back({array.name, why});
+    leftovers_.push_back({printable(array.name), why});
   }
   return {};
 }

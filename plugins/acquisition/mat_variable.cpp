@@ -5,6 +5,8 @@
 #include <cstring>
 #include <optional>
 
+#include "printable.hpp"
+
 namespace bodeflow::acquisition {
 namespace {
 
@@ -120,7 +122,7 @@ Expected<void> Parser::fields(MatArray& a, std::int64_t end, std::size_t depth) 
     if (auto done = stream_.skip_to(next); !done) return done;
     const auto inner = element(end);
     if (!inner) return forward(inner.error());
-    if (inner->type != kMatrix) return unexpected("field '" + field + "' is no array");
+    if (inner->type != kMatrix) return unexpected("field " + shown(field) + " is no array");
     if (auto done = array(*inner, a.name + "." + field, depth + 1); !done) return done;
     next = inner->next;
   }
@@ -257,7 +259,7 @@ void convert(MatNumber type, bool big_endian, std::span<const char> bytes, doubl
 Expected<std::vector<MatArray>> read_mat_variable(MatStream& stream, bool big_endian) {
   Parser parser(stream, big_endian);
   if (auto done = parser.variable(); !done) {
-    const std::string name = parser.name().empty() ? "a variable" : "variable '" + parser.name() + "'";
+    const std::string name = parser.name().empty() ? "a variable" : "variable " + shown(parser.name());
     return unexpected(name + " is damaged: " + done.error().text);
   }
   return parser.take();

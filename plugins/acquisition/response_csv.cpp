@@ -75,6 +75,8 @@ class Reader {
     if (!fields) return Unexpected<TextError>{fields.error()};
     for (std::size_t c = 0; c < header->columns.size(); ++c) {
       headers_.push_back(header->columns[c].header);
+      const auto broken = header->unreadable.find(c);
+      if (broken != header->unreadable.end() && response_column(headers_.back())) return Unexpected<TextError>{broken->second};
       if (auto done = take_column(c, (*fields)[c].column); !done) return done;
     }
     if (!frequency_.present)

@@ -3,6 +3,8 @@
 #include <array>
 #include <string_view>
 
+#include "printable.hpp"
+
 namespace bodeflow::acquisition {
 namespace {
 
@@ -70,7 +72,7 @@ Expected<void> check_riff(ByteSource& source, std::int64_t size) {
       if (kind == "RF64" && length == kUnset) length = long_size;
       return check_data(length, total - at - 8, kind == "RF64");
     }
-    if (length > total - at - 8) return unexpected("cut off: chunk '" + id + "' goes beyond the end of the file");
+    if (length > total - at - 8) return unexpected("cut off: chunk " + shown(id) + " goes beyond the end of the file");
     at += 8 + length + length % 2;
   }
   return unexpected("no chunk of samples in it");

@@ -184,6 +184,16 @@ TEST_CASE("HDF5: each kind of broken or surprising file is refused with its reas
   CHECK(refusal([](Hdf5Writer& w) { w.put("t", ramp(4)).attribute("t", "unit", "s"); }, {"t"}, kNone) == "");
 }
 
+TEST_CASE("HDF5: names in the file reach messages as printable text") {
+  const TemporaryFile file(".h5");
+  Hdf5Writer(file.path()).put("x\x1B[31m", ramp(5)).put("T\xB0", ramp(5));
+  const Table t = read_file(file.path(), {}, kAt10Hz);
+  REQUIRE(t.columns.size() == 1);
+  CHECK(t.columns[0].header == "x?[31m");
+  CHECK(t.values == std::vector<std::vector<double>>{ramp(5)});
+  CHECK(read_file(file.path(), {"T?"}, kAt10Hz).error == "'T?' has a name that is not UTF-8 text");
+}
+
 TEST_CASE("HDF5: files that are none, cut off or overwritten are refused") {
   const TemporaryFile text(".h5", "t [s],u [V]\n0,1\n"), empty(".h5", "");
   CHECK(read_file(text.path()).error == "F: is not an HDF5 file");

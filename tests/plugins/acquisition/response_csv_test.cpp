@@ -31,6 +31,16 @@ std::string meaning(const char* header) {
 
 }  // namespace
 
+TEST_CASE("response CSV: a name that is not UTF-8 is refused where it means a quantity") {
+  const auto message = [](const std::string& text) {
+    const auto source = open_memory(text);
+    return test::message_of(read_response_csv(*source, {}));
+  };
+  CHECK(message("f [Hz],re(G11),im(G11),T\xB0\n1,2,3,x\n") == "read");
+  CHECK(message("f [Hz],re(G\xB0),im(G\xB0)\n1,2,3\n") ==
+        "F:1:8: the name of column 2, 're(G?)', is not UTF-8 text; save the file as UTF-8");
+}
+
 TEST_CASE("response CSV: headers say part, quantity and unit") {
   const std::vector<std::pair<const char*, const char*>> cases = {
       {"f [Hz]", "f  [Hz]"},

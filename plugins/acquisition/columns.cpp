@@ -51,11 +51,12 @@ Column parse_header(std::string_view text) {
   text = trimmed(text);
   Column column;
   column.header = column.name = text;
-  const std::size_t open = text.rfind('[');
-  const std::size_t line = text.rfind('_');
+  const std::size_t square = text.rfind('['), round = text.rfind(" ("), line = text.rfind('_');
+  const auto ends_with = [&](char last) { return !text.empty() && text.back() == last; };
   std::string_view name, unit;
   bool known = false;
-  if (!text.empty() && text.back() == ']' && open != std::string_view::npos) {
+  if ((ends_with(']') && square != std::string_view::npos) || (ends_with(')') && round != std::string_view::npos)) {
+    const std::size_t open = ends_with(']') ? square : round + 1;
     name = trimmed(text.substr(0, open));
     unit = trimmed(text.substr(open + 1, text.size() - open - 2));
     known = is_unit(unit);

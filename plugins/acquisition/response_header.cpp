@@ -32,22 +32,14 @@ bool is_capital(char c) { return c >= 'A' && c <= 'Z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return is_capital(c) || (c >= 'a' && c <= 'z'); }
 
-/// Name and unit of a header; `omega_rad_s` and `mag (dB)` beside what every table has.
+/// Name and unit of a header; `omega_rad_s` beside what every table has.
 Column name_and_unit(std::string_view header) {
   Column column = parse_header(header);
   const std::string_view name = trimmed(header);
   constexpr std::string_view kRadians = "_rad_s";
-  const std::size_t open = name.rfind('(');
   if (name.size() > kRadians.size() && name.substr(name.size() - kRadians.size()) == kRadians) {
     column.name = name.substr(0, name.size() - kRadians.size());
     column.unit = "rad/s";
-  } else if (column.unit.empty() && !name.empty() && name.back() == ')' && open != std::string_view::npos && open > 0 &&
-             name[open - 1] == ' ') {
-    const std::string_view unit = trimmed(name.substr(open + 1, name.size() - open - 2));
-    if (is_unit(unit)) {
-      column.name = trimmed(name.substr(0, open));
-      column.unit = unit;
-    }
   }
   return column;
 }

@@ -69,7 +69,7 @@ class TableReader {
 Expected<std::size_t> find_column(const std::vector<Column>& columns, const std::string& name,
                                   const std::vector<Leftover>& leftovers = {});
 
-/// The name and unit in a header `name [unit]` or `name_unit`; a unit that is not known stays part of the name.
+/// The name and unit in a header `name [unit]`, `name (unit)` or `name_unit`; a unit that is not known stays part of the name.
 Column parse_header(std::string_view text);
 
 /// True for a text that is a unit as far as a data file may have one: known, and not empty.

@@ -11,6 +11,7 @@ struct ColumnSummary {
   /// Runs of at least three equal samples at the least or the greatest value. Three runs or more suggest clipping.
   std::int64_t runs_at_least = 0;
   std::int64_t runs_at_greatest = 0;
+  bool between = false;  ///< there are values between the least and the greatest
 };
 
 /// How the rows stand in time.
@@ -44,8 +45,9 @@ struct TableSummary {
   std::vector<std::string> remarks;
 };
 
-/// The index of the time column, or nothing where there is none or it is ignored. Errors: several that could be it, or the one
-/// that is named is none. `selected` settles which of several: one that stands beside the first selected column in a tree.
+/// The index of the time column, or nothing where there is none or it is ignored. Errors: several that could be it, the one
+/// that is named is none, or a stated unit that is not its own. `selected` settles which of several: one that stands beside the
+/// first selected column in a tree.
 Expected<std::optional<std::size_t>> find_time_column(const TableReader& table, std::span<const std::size_t> selected,
                                                       const Timing& timing);
 

@@ -30,8 +30,14 @@ void SummaryOfColumn::Extreme::take(double x, bool beyond) {
 void SummaryOfColumn::add(std::span<const double> values) {
   if (values.empty()) return;
   if (empty_) {
-    least_.value = greatest_.value = values.front();
+    first_ = least_.value = greatest_.value = values.front();
     empty_ = false;
+  }
+  for (std::size_t n = 0; n < values.size() && !between_; ++n) {
+    const double x = values[n];
+    if (x == first_) continue;
+    if (!other_) other_ = x;
+    between_ = x != *other_;
   }
   double least = values.front(), greatest = least;
   for (const double x : values) {
@@ -48,7 +54,7 @@ void SummaryOfColumn::add(std::span<const double> values) {
   }
 }
 
-ColumnSummary SummaryOfColumn::result() const { return {least_.value, greatest_.value, least_.runs, greatest_.runs}; }
+ColumnSummary SummaryOfColumn::result() const { return {least_.value, greatest_.value, least_.runs, greatest_.runs, between_}; }
 
 int last_digit_of(std::string_view number) {
   const std::size_t e = number.find_first_of("eE");
@@ -67,7 +73,7 @@ int last_digit_of(std::string_view number) {
 }
 
 std::string clipping_suspicion(const ColumnSummary& column) {
-  if (column.least == column.greatest) return "";
+  if (!column.between) return "";
   std::string text;
   const auto side = [&text](std::int64_t runs, double value) {
     if (runs < kRuns) return;

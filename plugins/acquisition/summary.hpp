@@ -21,6 +21,9 @@ class SummaryOfColumn {
     void take(double x, bool beyond);
   };
   Extreme least_, greatest_;
+  double first_ = 0.0;
+  std::optional<double> other_;  // a second value
+  bool between_ = false;         // there is a third one
   bool empty_ = true;
 };
 
@@ -28,7 +31,7 @@ class SummaryOfColumn {
 int last_digit_of(std::string_view number);
 
 /// What to tell the user when the column looks clipped, or "": at least three separate runs of three or more equal samples at
-/// its least or greatest value, which are not the same.
+/// its least or greatest value, with others between these. A column of two values is binary, not clipped.
 std::string clipping_suspicion(const ColumnSummary& column);
 
 }  // namespace bodeflow::acquisition

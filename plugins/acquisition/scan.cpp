@@ -25,6 +25,21 @@ std::string branch(const std::string& header) {
   return end == std::string::npos ? "" : header.substr(0, end);
 }
 
+/// Refuses a stated unit of time where the time column has another, or where there is no column that it could belong to.
+Expected<std::optional<std::size_t>> checked_unit(const TableReader& table, std::optional<std::size_t> time,
+                                                  const Timing& timing) {
+  if (timing.time_unit.empty()) return time;
+  if (!time)
+    return unexpected(table.file() +
+                      ": time_unit: no column `t` or `time` that holds time; name the one that does with time_column");
+  const Column& c = table.columns()[*time];
+  if (!c.unit.empty() && seconds_per(c.unit) != seconds_per(timing.time_unit)) {
+    return unexpected(table.file() + ": time_unit: " + timing.time_unit + " is stated, but column '" + c.header +
+                      "' has the unit " + c.unit + "; leave time_unit out, or correct the file");
+  }
+  return time;
+}
+
 std::string hertz(double rate) { return number_text(rate) + " Hz"; }
 
 /// Refuses columns of different length, and of different rates; the common rate, unknown where the file states none.
@@ -276,7 +291,7 @@ Expected<std::optional<std::size_t>> find_time_column(const TableReader& table, 
           table.file() + ": time_column: '" + c.header + "' has " +
           (c.unit.empty() ? "no unit; state it, such as time_unit: s" : "the unit " + c.unit + ", no unit of time"));
     }
-    return Found(*found);
+    return checked_unit(table, *found, timing);
   }
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -286,9 +301,9 @@ Expected<std::optional<std::size_t>> find_time_column(const TableReader& table, 
   for (const std::size_t i : candidates) {
     if (!selected.empty() && branch(columns[i].header) == branch(columns[selected.front()].header)) beside.push_back(i);
   }
-  if (candidates.size() == 1) return Found(candidates.front());
-  if (candidates.empty()) return Found();
-  if (beside.size() == 1) return Found(beside.front());
+  if (candidates.size() == 1) return checked_unit(table, candidates.front(), timing);
+  if (candidates.empty()) return checked_unit(table, std::nullopt, timing);
+  if (beside.size() == 1) return checked_unit(table, beside.front(), timing);
   return unexpected(table.file() + ": several time columns, '" + columns[candidates[0]].header + "' and '" +
                     columns[candidates[1]].header + "'; say which by time_column");
 }

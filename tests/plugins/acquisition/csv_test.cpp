@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "acquisition/printable.hpp"
 #include "acquisition/summary.hpp"
 #include "catch.hpp"
 #include "read_whole.hpp"
@@ -45,7 +46,11 @@ TEST_CASE("CSV: each kind of broken file is refused with its place and reason") 
        "F:1:1: no header: the first line holds numbers; begin the file with a line of names, such as 't [s],u [V],y [rad]'"},
       {"column without a name", "u,,y\n1,2,3\n", "F:1:3: column 2 has no name"},
       {"duplicate name", "u,y,u\n1,2,3\n", "F:1:5: column name 'u' stands twice: columns 1 and 3"},
-      {"name in Latin-1", "u,\xB0\n1,2\n", "F:1:3: the name of column 2 is not UTF-8 text"},
+      {"name in Latin-1", "u,\xB0\n1,2\n", "F:1:3: the name of column 2, '?', is not UTF-8 text; save the file as UTF-8"},
+      {"text that is not UTF-8", "u\n1\xFF\x1B[31m\xC3\xA9\n", "F:2:1: column 'u': '1??[31m\xC3\xA9' is not a number"},
+      {"control characters in a name", "u\x1B[31m\nx\n", "F:2:1: column 'u?[31m': 'x' is not a number"},
+      {"long text that is cut inside of a character", "u\n" + std::string(39, 'x') + "\xC3\xA9y\n",
+       "F:2:1: column 'u': 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx...' is not a number"},
       {"two time columns", "t [s],u,time [ms]\n0,1,2\n",
        "F: several time columns, 't [s]' and 'time [ms]'; say which by time_column"},
       {"row too short", "u,y\n1,2\n3\n", "F:3:2: 1 field; the header has 2"},
@@ -113,6 +118,20 @@ TEST_CASE("CSV: times that are not equally spaced are refused with the line and 
   CHECK(read_text("t [s],u\n0,1\n0.1,2\n0.2,3\n", {12.0, false, "", ""}).error ==
         "F: the time column says 10 Hz, parameter rate says 12 Hz; time: ignore reads the file by the rate alone");
   CHECK(read_text("t [s],u\n0,1\n0.1,2\n0.2,3\n", {12.0, true, "", ""}).error.empty());
+}
+
+TEST_CASE("CSV: a unit of time is stated only where the file has none") {
+  const auto error = [](const char* header, const char* unit) {
+    return read_text(std::string(header) + "\n0,1\n1,2\n2,4\n", {std::nullopt, false, "", unit}, {"u"}).error;
+  };
+  CHECK(error("t,u", "ms") == "");
+  CHECK(error("t [ms],u", "ms") == "");
+  CHECK(error("t [s],u", "ms") ==
+        "F: time_unit: ms is stated, but column 't [s]' has the unit s; leave time_unit out, or correct the file");
+  CHECK(error("clock,u", "ms") ==
+        "F: time_unit: no column `t` or `time` that holds time; name the one that does with time_column");
+  CHECK(read_text("clock [s],u\n0,1\n1,2\n", {std::nullopt, false, "clock", "ms"}, {"u"}).error ==
+        "F: time_unit: ms is stated, but column 'clock [s]' has the unit s; leave time_unit out, or correct the file");
 }
 
 TEST_CASE("CSV: slow drift of the sampling interval is refused, jitter within a tenth of a step is not") {
@@ -187,6 +206,16 @@ TEST_CASE("CSV: columns that are not selected may hold anything but must keep th
   CHECK(read_text("when,u\n10:00,1\n10:01,2,3\n", kAt10Hz, {"u"}).error == "F:3:9: 3 fields; the header has 2");
 }
 
+TEST_CASE("CSV: a name that is not UTF-8 does no harm where its column is not read") {
+  const std::string text = "u,Temp [\xB0\x43],T\xB0,y\n1,a,b,2\n3,c,d,4\n";
+  const test::Table read = read_text(text, kAt10Hz, {"u", "y"});
+  CHECK(read.error == "");
+  CHECK(read.values == std::vector<std::vector<double>>{{1, 3}, {2, 4}});
+  CHECK(read.columns[1].header == "Temp [?C]");
+  CHECK(read_text(text, kAt10Hz, {"u", "T?"}).error ==
+        "F:1:13: the name of column 3, 'T?', is not UTF-8 text; save the file as UTF-8");
+}
+
 TEST_CASE("CSV: every double is read correctly rounded") {
   std::mt19937_64 random(7);
   std::string text = "u,v\n";
@@ -235,6 +264,25 @@ TEST_CASE("CSV: flat tops that come back are suspected of clipping, a constant o
   for (const std::size_t c : {1u, 2u, 3u}) CHECK(clipping_suspicion(r.summary.columns[c]) == "");
 }
 
+TEST_CASE("CSV: a column of two values is binary, not clipped") {
+  std::string text = "binary,late,clipped\n";
+  for (int n = 0; n < 9000; ++n)
+    text += std::string(n / 5 % 2 == 0 ? "-2," : "3,") +
+            (n == 8000        ? "0.5,"
+             : n / 5 % 2 == 0 ? "-2,"
+                              : "3,") +
+            (n / 5 % 2 == 0 ? "-2\n"
+             : n % 5 == 0   ? "1\n"
+                            : "3\n");
+  const test::Table r = read_text(text, kAt10Hz);
+  REQUIRE(r.error == "");
+  CHECK(clipping_suspicion(r.summary.columns[0]) == "");
+  CHECK(clipping_suspicion(r.summary.columns[1]) ==
+        "rests 900 times at -2 and 900 times at 3 for three samples or more: clipped?");
+  CHECK(clipping_suspicion(r.summary.columns[2]) ==
+        "rests 900 times at -2 and 900 times at 3 for three samples or more: clipped?");
+}
+
 TEST_CASE("CSV: header names and their units") {
   const auto is = [](const char* header, const char* name, const char* unit) {
     INFO(header);
@@ -247,12 +295,28 @@ TEST_CASE("CSV: header names and their units") {
   is("theta_motor [rad]", "theta_motor", "rad");
   is("omega [rad/s]", "omega", "rad/s");
   is("omega_rad/s", "omega", "rad/s");
+  is("Time (s)", "Time", "s");
+  is("CH1 ( V )", "CH1", "V");
+  is("CH 2 (rad/s)", "CH 2", "rad/s");
+  is("speed (filtered)", "speed (filtered)", "");
+  is("re(V)", "re(V)", "");
+  is("(V)", "(V)", "");
+  is(")", ")", "");
+  is("]", "]", "");
   is("iq_ref", "iq_ref", "");
   is("u_1", "u_1", "");
   is("x_min", "x_min", "");
   is("x [furlong]", "x [furlong]", "");
   is("[V]", "[V]", "");
   is("_V", "_V", "");
+}
+
+TEST_CASE("CSV: units in parentheses, as oscilloscopes write them, make a time column") {
+  const test::Table t = read_text("Time (s),CH1 (V)\n-0.002,1\n-0.001,2\n0,4\n");
+  REQUIRE(t.error == "");
+  CHECK(t.summary.rate == Rate(1000, 1));
+  CHECK(t.values == std::vector<std::vector<double>>{{1, 2, 4}});
+  CHECK(t.columns[1].unit == "V");
 }
 
 TEST_CASE("CSV: columns are found with and without their unit, and the nearest name is offered") {
@@ -269,4 +333,14 @@ TEST_CASE("CSV: columns are found with and without their unit, and the nearest n
         "[rad]'?)");
   CHECK(find_column(columns, "pressure").error().text ==
         "no column 'pressure'; the file has iq_ref_A, iq_A, theta_motor [rad], w [rad/s], w [V]");
+}
+
+TEST_CASE("printable text is UTF-8 without control characters, whatever the bytes") {
+  CHECK(printable("a\tb\x1B\x7F") == "a?b??");
+  CHECK(printable("\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x99\x82") == "\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x99\x82");
+  CHECK(printable("\xC2\x9B") == "?");          // a control character of two bytes
+  CHECK(printable("\xED\xA0\x80") == "???");    // half of a pair
+  CHECK(printable("\xC0\x80\xFFx") == "???x");  // an overlong form
+  CHECK(printable("\xE2\x82") == "??");         // cut off
+  CHECK(printable(std::string("\0", 1)) == "?");
 }

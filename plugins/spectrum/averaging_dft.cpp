@@ -8,6 +8,12 @@
 #include "period_kernels.hpp"
 
 namespace bodeflow::spectrum {
+namespace {
+
+/// sum_p (p - mean p)^2 of `count` periods.
+double spread(double count) { return count * (count * count - 1.0) / 12.0; }
+
+}  // namespace
 
 AveragingDft::AveragingDft(Eigen::Index period, Layout layout, Detrend detrend, int vector_level)
     : period_(period), layout_(layout), detrend_(detrend), vector_level_(vector_level) {
@@ -75,17 +81,33 @@ void AveragingDft::add(const Eigen::Ref<const Eigen::MatrixXd>& input, const Eig
   add(frame);
 }
 
+/// The rise of the mean from one period to the next, by least squares over 2 periods or more.
+double AveragingDft::slope(Eigen::Index signal) const {
+  const auto count = static_cast<double>(periods_), samples = static_cast<double>(period_);
+  return (level_moment_[signal] - 0.5 * (count - 1.0) * sum_(0, signal).real()) / (spread(count) * samples);
+}
+
 /// Takes the share of a linear drift off the mean spectra.
 void AveragingDft::correct_drift(Eigen::MatrixXcd& mean) const {
-  const auto count = static_cast<double>(periods_), samples = static_cast<double>(period_);
+  const auto samples = static_cast<double>(period_);
   if (periods_ < 2) return;
-  const double spread = count * (count * count - 1.0) / 12.0;  // sum_p (p - mean p)^2
   for (Eigen::Index a = 0; a < mean.cols(); ++a) {
-    const double slope = (level_moment_[a] - 0.5 * (count - 1.0) * sum_(0, a).real()) / (spread * samples * samples);
+    const double each_sample = slope(a) / samples;
     for (Eigen::Index k = 1; k < mean.rows(); ++k) {
       const double angle = -2.0 * std::numbers::pi * static_cast<double>(k) / samples;
-      mean(k, a) -= slope / (std::polar(1.0, angle) - 1.0);
+      mean(k, a) -= each_sample / (std::polar(1.0, angle) - 1.0);
     }
+  }
+}
+
+void AveragingDft::take_trend(Moments& m) const {
+  const auto count = static_cast<double>(periods_), samples = static_cast<double>(period_);
+  m.trend.resize(sum_.cols());
+  m.trend_residual.resize(sum_.cols());
+  for (Eigen::Index a = 0; a < sum_.cols(); ++a) {
+    m.trend[a] = slope(a);
+    const double all = (squares_(0, a) - sum_(0, a).real() * sum_(0, a).real() / count) / (samples * samples);
+    m.trend_residual[a] = std::max(0.0, all - m.trend[a] * m.trend[a] * spread(count));
   }
 }
 
@@ -113,6 +135,7 @@ Expected<Moments> AveragingDft::moments() const {
     m.last.col(a) = (first_.col(a) + spectrum_[static_cast<std::size_t>(a)]) / samples;
   }
   m.second = second_ / samples;
+  if (detrend_ == Detrend::none && periods_ > 2) take_trend(m);
   return m;
 }
 

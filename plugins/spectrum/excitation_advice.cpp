@@ -94,6 +94,12 @@ class Adviser {
   void experiment() {
     const std::vector<double> note = excitation_.note("excitation.experiment");
     const Schedule& s = p_.schedule;
+    if (note.empty() && s.realisations > 1 && !excitation_.note("excitation.period").empty()) {
+      warn(
+          "the excitation is the same in all realisations, so that nonlinear distortion repeats and is not in the variance: give "
+          "each "
+          "phases of its own (phases: random, experiment_periods and realisations of the generator)");
+    }
     if (note.empty() || !s.starts.empty() || periods_ == 0) return;
     const double samples = note.front() * rate_;
     const auto taken = static_cast<double>((s.skip + periods_) * s.period);

@@ -24,6 +24,10 @@ struct Moments {
   /// Spectra of single periods, kept for checks: the first, the second and the last one averaged.
   Eigen::MatrixXcd first, second, last;
 
+  /// Straight line through the means of the periods, of each signal: its rise from one period to the next, and the sum of squares
+  /// around it. Empty: fewer than 3 periods, periods left out, or a drift that was taken off.
+  Eigen::VectorXd trend, trend_residual;
+
   std::vector<std::int64_t> left_out;  ///< periods, counted from 0, that were not averaged
 
   bool has_noise() const { return degrees_of_freedom > 0.0; }

@@ -85,7 +85,11 @@ Expected<Moments> PeriodSelection::moments() const {
     if (!std::binary_search(left_out.begin(), left_out.end(), p)) average.add(frames_[static_cast<std::size_t>(p)]);
   }
   auto m = average.moments();
-  if (m) m->left_out = left_out;
+  if (m && !left_out.empty()) {
+    m->left_out = left_out;
+    m->trend.resize(0);  // the periods do not follow each other
+    m->trend_residual.resize(0);
+  }
   return m;
 }
 

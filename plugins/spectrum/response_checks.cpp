@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "repetition_checks.hpp"
 #include "signals.hpp"
 
 namespace bodeflow::spectrum {
@@ -270,10 +271,16 @@ EndPeriods end_periods(const Moments& m, Eigen::Index signal, const std::vector<
 
 std::vector<std::string> response_warnings(const Judged& judged) {
   std::vector<std::string> out;
-  for (const auto check :
-       {few_periods, left_out, weak_input, wrong_period, beside_excited, aliasing, transient, condition, distortion}) {
-    check(judged, out);
-  }
+  const auto run = [&](std::initializer_list<void (*)(const Judged&, std::vector<std::string>&)> checks) {
+    for (const auto check : checks) check(judged, out);
+  };
+  run({few_periods, left_out, weak_input, wrong_period, beside_excited});
+  const std::size_t before = out.size();
+  drift(judged, out);
+  const bool drifts = out.size() > before;
+  if (!drifts) aliasing(judged, out);
+  run({transient, condition, same_phases});
+  if (!drifts) distortion(judged, out);
   return out;
 }
 

@@ -25,9 +25,11 @@ struct Judged {
 /// - successive periods that turn against each other: the period is not that of the excitation, or the clocks differ. The turn is
 ///   the slope over the lines of the angles between the first two and between first and last period, |slope| > 5 deviations;
 /// - power beside the excited lines of the input: leakage, or what an actuator adds;
+/// - a signal that drifts, see repetition_checks.hpp; its ramp stands on all lines, so aliasing and distortion are not judged then;
 /// - excited lines above 0.8 of the Nyquist frequency, or output power right below it where nothing is excited;
 /// - a first period that differs from the others more than the last one does: the transient is not over;
 /// - inputs that the experiments hardly tell apart (condition above 20);
+/// - realisations that repeat an excitation, see repetition_checks.hpp;
 /// - nonlinear distortion three times the noise and more, with how many times.
 std::vector<std::string> response_warnings(const Judged& judged);
 

@@ -337,6 +337,13 @@ TEST_CASE("experiments: advice before a run") {
         "multiple of "
         "it");
   CHECK(wrong[4] == "warning: the plant settles in 0.25 s, and 0 s are skipped: set skip to 2, or transient: remove");
+  Driver repeated;
+  repeated.set("period", std::int64_t{100}).set("skip", std::int64_t{1}).set("periods", std::int64_t{2});
+  repeated.set("realisations", std::int64_t{2});
+  repeated.configure();
+  CHECK(repeated.advise({u, y, {}})[3] ==
+        "warning: the excitation is the same in all realisations, so that nonlinear distortion repeats and is not in the "
+        "variance: give each phases of its own (phases: random, experiment_periods and realisations of the generator)");
   u.notes["excitation.experiment"] = {0.5};
   CHECK(advice(100, 3)[2] ==
         "warning: the phases of the excitation change after each 500 samples, and an experiment is taken to be 1000 (skip and "

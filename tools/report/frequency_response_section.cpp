@@ -205,8 +205,9 @@ bool add_frequency_response(Page& page, const Record& record) {
   }
   if (const auto levels = level_charts(*response); !levels.empty()) {
     page.heading("Noise and distortion");
-    page.grid(levels,
-              "Where distortion stands well above the noise, the response is the best linear approximation at this amplitude alone.");
+    page.grid(
+        levels,
+        "Where distortion stands well above the noise, the response is the best linear approximation at this amplitude alone.");
   }
   add_curves(page, record, {"frequency", "line"}, record.array("frequency")->size());
   add_numbers(page, *response);

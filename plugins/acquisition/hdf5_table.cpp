@@ -33,17 +33,44 @@ struct Source {
   std::vector<double> values;    // row by row, or column by column where transposed
 
   void fill(hsize_t row, hsize_t rows);
+  void read();
   double value(hsize_t row, hsize_t column) const {
     const hsize_t r = row - begin, c = column - least;
     return values[place.transposed ? c * (end - begin) + r : r * width + c];
   }
 };
 
+/// Ends with Failure where the data set is stored through a filter that this library does not have.
+void check_filters(const Source& s) {
+  const std::string what = "data set '" + printable(s.path) + "'";
+  const Handle creation(H5Dget_create_plist(s.dataset.id()), H5Pclose, what + " can't be read");
+  const int filters = H5Pget_nfilters(creation.id());
+  for (int i = 0; i < filters; ++i) {
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    char name[64] = "";
+    const H5Z_filter_t filter =
+        H5Pget_filter2(creation.id(), static_cast<unsigned>(i), &flags, &values, nullptr, sizeof name - 1, name, &config);
+    if (filter < 0 || H5Zfilter_avail(filter) > 0) continue;
+    fail(what + " is compressed with filter " + (*name == '\0' ? "" : "'" + printable(name) + "' ") + "(" +
+         std::to_string(filter) + "), which is not available here; store it with gzip");
+  }
+}
+
 void Source::fill(hsize_t row, hsize_t rows) {
   begin = row;
   end = std::min(row + block, rows);
+  values.resize((end - begin) * width);
+  try {
+    read();
+  } catch (const Failure&) {
+    check_filters(*this);
+    throw;
+  }
+}
+
+void Source::read() {
   const hsize_t count = end - begin;
-  values.resize(count * width);
   if (place.flat) {
     h5::read(dataset.id(), {begin}, {count}, values.data());
   } else if (place.transposed) {
@@ -67,10 +94,35 @@ hsize_t chunk_bytes(hid_t dataset, const Source& s) {
   return chunk[0] * chunk[1] * H5Tget_size(type.id()) * chunks;
 }
 
+// A data set of which fewer chunks were ever written than one in so many is not read: the rest is fill values.
+constexpr hsize_t kSparsest = 1000;
+
+/// Ends with Failure for a data set whose values, or nearly all of them, were never written.
+void check_written(hid_t dataset, const Source& s) {
+  const std::string what = "data set '" + printable(s.path) + "'";
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, what + " can't be read");
+  const H5D_layout_t layout = H5Pget_layout(creation.id());
+  if (layout == H5D_CONTIGUOUS && H5Pget_external_count(creation.id()) == 0 && H5Dget_storage_size(dataset) == 0)
+    fail(what + " holds no values: none was ever written");
+  if (layout != H5D_CHUNKED) return;
+  std::vector<hsize_t> chunk(2, 1);
+  h5::check(H5Pget_chunk(creation.id(), 2, chunk.data()), what + " can't be read");
+  const auto shape = h5::shape_of(dataset);
+  hsize_t chunks = 1, written = 0;
+  for (std::size_t i = 0; i < shape.size(); ++i) chunks *= (shape[i] - 1) / chunk[i] + 1;
+  const Handle space(H5Dget_space(dataset), H5Sclose, what + " can't be read");
+  h5::check(H5Dget_num_chunks(dataset, space.id(), &written), what + " can't be read");
+  if (written == 0) fail(what + " holds no values: none was ever written");
+  if (written < chunks / kSparsest)
+    fail(what + " has " + std::to_string(chunks) + " chunks, but only " + std::to_string(written) +
+         " were ever written; the others hold no values");
+}
+
 /// The data set opened with room for its chunks, taken from `room`. Ends with Failure where there is not enough.
 Handle open_dataset(hid_t file, const Source& s, hsize_t& room) {
   const std::string what = "data set '" + s.path + "' can't be opened";
   Handle dataset(H5Dopen2(file, s.path.c_str(), H5P_DEFAULT), H5Dclose, what);
+  check_written(dataset.id(), s);
   const hsize_t bytes = chunk_bytes(dataset.id(), s);
   if (bytes == 0) return dataset;
   if (bytes > room) {

@@ -57,7 +57,12 @@ Expected<std::unique_ptr<TableReader>> open_table(const std::string& path) {
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   const auto* const format = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return ending == f.ending; });
   if (format == kFormats.end()) return unexpected(path + ": ending '" + ending + "'; read are " + table_endings());
-  if (auto there = open_file(path); !there) return unexpected(path + ": " + there.error().text);
+  auto bytes = open_file(path);
+  if (!bytes) return unexpected(path + ": " + bytes.error().text);
+  char first = 0;
+  const auto got = (*bytes)->read(&first, 1);
+  if (!got) return unexpected(path + ": " + got.error().text);
+  if (*got == 0) return unexpected(path + ": empty file");
   return format->open(path);
 }
 

@@ -184,6 +184,72 @@ TEST_CASE("HDF5: each kind of broken or surprising file is refused with its reas
   CHECK(refusal([](Hdf5Writer& w) { w.put("t", ramp(4)).attribute("t", "unit", "s"); }, {"t"}, kNone) == "");
 }
 
+TEST_CASE("HDF5: values behind a filter that is not there are refused with its name") {
+  constexpr H5Z_filter_t kFilter = 300;  // of the range for tests
+  const H5Z_class2_t same = {
+      H5Z_CLASS_T_VERS,
+      kFilter,
+      1,
+      1,
+      "squeeze",
+      nullptr,
+      nullptr,
+      [](unsigned, std::size_t, const unsigned*, std::size_t bytes, std::size_t*, void**) { return bytes; }};
+  REQUIRE(H5Zregister(&same) >= 0);
+  const TemporaryFile file(".h5");
+  {
+    Hdf5Writer w(file.path());
+    w.put("x", ramp(50));
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    const hsize_t shape[] = {50}, chunk[] = {10};
+    H5Pset_chunk(creation, 1, chunk);
+    H5Pset_filter(creation, kFilter, H5Z_FLAG_OPTIONAL, 0, nullptr);
+    const hid_t space = H5Screate_simple(1, shape, nullptr);
+    const hid_t set = H5Dcreate2(w.id(), "y", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, ramp(50).data());
+    H5Dclose(set);
+    H5Sclose(space);
+    H5Pclose(creation);
+  }
+  CHECK(read_file(file.path(), {"y"}, kAt10Hz).values == std::vector<std::vector<double>>{ramp(50)});
+  REQUIRE(H5Zunregister(kFilter) >= 0);
+  CHECK(read_file(file.path(), {"x"}, kAt10Hz).error == "");
+  CHECK(read_file(file.path(), {"x", "y"}, kAt10Hz).error ==
+        "F: data set 'y' is compressed with filter 'squeeze' (300), which is not available here; store it with gzip");
+}
+
+TEST_CASE("HDF5: data sets that were never written, or hardly, are refused") {
+  const TemporaryFile file(".h5");
+  {
+    Hdf5Writer w(file.path());
+    w.put_empty("flat", H5T_IEEE_F64LE, {100});
+    const auto create = [&](const char* path, hsize_t rows, hsize_t written) {
+      const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+      const hsize_t chunk[] = {10}, first[] = {0};
+      H5Pset_chunk(creation, 1, chunk);
+      const hid_t space = H5Screate_simple(1, &rows, nullptr);
+      const hid_t set = H5Dcreate2(w.id(), path, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+      if (written > 0) {
+        const hid_t memory = H5Screate_simple(1, &written, nullptr);
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, first, nullptr, &written, nullptr);
+        H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, ramp(written).data());
+        H5Sclose(memory);
+      }
+      H5Dclose(set);
+      H5Sclose(space);
+      H5Pclose(creation);
+    };
+    create("none", 100, 0);
+    create("sparse", hsize_t{10000000000000}, 20);
+    create("half", 100, 20);
+  }
+  CHECK(read_file(file.path(), {"flat"}, kAt10Hz).error == "F: data set 'flat' holds no values: none was ever written");
+  CHECK(read_file(file.path(), {"none"}, kAt10Hz).error == "F: data set 'none' holds no values: none was ever written");
+  CHECK(read_file(file.path(), {"sparse"}, kAt10Hz).error ==
+        "F: data set 'sparse' has 1000000000000 chunks, but only 2 were ever written; the others hold no values");
+  CHECK(read_file(file.path(), {"half"}, kAt10Hz).summary.rows == 100);
+}
+
 TEST_CASE("HDF5: names in the file reach messages as printable text") {
   const TemporaryFile file(".h5");
   Hdf5Writer(file.path()).put("x\x1B[31m", ramp(5)).put("T\xB0", ramp(5));
@@ -197,7 +263,7 @@ TEST_CASE("HDF5: names in the file reach messages as printable text") {
 TEST_CASE("HDF5: files that are none, cut off or overwritten are refused") {
   const TemporaryFile text(".h5", "t [s],u [V]\n0,1\n"), empty(".h5", "");
   CHECK(read_file(text.path()).error == "F: is not an HDF5 file");
-  CHECK(read_file(empty.path()).error == "F: is not an HDF5 file");
+  CHECK(read_file(empty.path()).error == "F: empty file");
   CHECK(read_file("/nowhere/x.h5").error == "F: can't be opened: No such file or directory");
 
   const TemporaryFile file(".h5");
@@ -252,8 +318,13 @@ TEST_CASE("HDF5: large chunks are read once, chunks beyond the bound are refused
     const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
     const hsize_t chunk[] = {std::size_t{40} << 20}, shape[] = {std::size_t{40} << 20};
     H5Pset_chunk(creation, 1, chunk);
+    H5Pset_deflate(creation, 1);
     const hid_t space = H5Screate_simple(1, shape, nullptr);
-    H5Dclose(H5Dcreate2(w.id(), "huge", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    const hid_t huge = H5Dcreate2(w.id(), "huge", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    const char one = 0;  // a chunk whose bytes are nonsense: it is refused before they are read
+    const hsize_t first[] = {0};
+    H5Dwrite_chunk(huge, H5P_DEFAULT, 0, first, 1, &one);
+    H5Dclose(huge);
     H5Sclose(space);
     H5Pclose(creation);
   }

@@ -1,5 +1,7 @@
 #include "csv_block.hpp"
 
+#include "file_name.hpp"
+
 namespace bodeflow::output {
 namespace {
 
@@ -42,7 +44,7 @@ void CsvBlock::describe(Describe& d) {
 }
 
 void CsvBlock::configure(const Parameters& p) {
-  name_ = p.text("file");
+  name_ = checked_file_name(p.text("file"));
   time_ = p.boolean("time");
   columns_ = p.texts("columns");
 }

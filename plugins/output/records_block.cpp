@@ -1,5 +1,6 @@
 #include "records_block.hpp"
 
+#include "file_name.hpp"
 #include "record_json.hpp"
 
 namespace bodeflow::output {
@@ -14,7 +15,7 @@ void RecordsBlock::describe(Describe& d) {
   d.parameter("file", "records.jsonl").doc("the file's name, inside the run directory");
 }
 
-void RecordsBlock::configure(const Parameters& p) { name_ = p.text("file"); }
+void RecordsBlock::configure(const Parameters& p) { name_ = checked_file_name(p.text("file")); }
 
 void RecordsBlock::activate(const Activation&) {
   const auto path = output_path(name_);

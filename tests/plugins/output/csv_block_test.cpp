@@ -3,12 +3,14 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <random>
 
 #include "acquisition/open_table.hpp"
 #include "acquisition/scan.hpp"
 #include "catch.hpp"
 #include "folder.hpp"
+#include "output/records_block.hpp"
 #include "plugins/block_driver.hpp"
 
 using namespace bodeflow;
@@ -165,4 +167,25 @@ TEST_CASE("output.csv: a folder that is not there is named") {
   block.configure();
   block.resolve({facts(1, "V"), kNothing, kNothing, kNothing});
   CHECK(failure_of([&] { block.activate(1, Rate(2500, 1)); }) == "/nowhere/signals.csv: No such file or directory");
+}
+
+TEST_CASE("output.csv, output.records: a name that is no file of the run directory is refused before the run") {
+  const auto refusal = [](auto block, const char* name) {
+    block->set("file", std::string(name));
+    return failure_of([&] { block->configure(); });
+  };
+  const auto csv = [&](const char* name) { return refusal(std::make_unique<BlockDriver<CsvBlock>>(), name); };
+  CHECK(csv("") == "file: '': the name is empty");
+  CHECK(csv("../evil.csv") == "file: '../evil.csv': '..' is not allowed: files go into the run directory");
+  CHECK(csv("a/../../b.csv") == "file: 'a/../../b.csv': '..' is not allowed: files go into the run directory");
+  CHECK(csv("/tmp/b.csv") == "file: '/tmp/b.csv': the path must be relative: files go into the run directory");
+  CHECK(csv("a/") == "file: 'a/': names a folder, not a file");
+  CHECK(csv(".") == "file: '.': names a folder, not a file");
+  CHECK(refusal(std::make_unique<BlockDriver<output::RecordsBlock>>(), "../r.jsonl") ==
+        "file: '../r.jsonl': '..' is not allowed: files go into the run directory");
+  for (const char* name : {"b.csv", "deep/er/b.csv", "..b.csv"}) {
+    BlockDriver<CsvBlock> block;
+    block.set("file", std::string(name));
+    block.configure();
+  }
 }

@@ -211,7 +211,7 @@ void AveragingDftBlock::send(Io& io, std::uint64_t offset, bool last) {
   const Levels band = levels_of(measured, driven, named.empty() ? estimate->lines.front() : named.front(),
                                 named.empty() ? estimate->lines.back() : named.back());
   measurement_.warnings =
-      response_warnings({measured, *estimate, band, settings_.form, measurement_.line_hz(), measurement_.names});
+      response_warnings({measured, *estimate, band, settings_.form, measurement_.line_hz(), measurement_.names, named.empty()});
   const std::int64_t periods = collector_->periods();
   if (!last || sent_ != periods || periods == 0 || filled_ > 0)
     io.emit(out, response_record(*estimate, band, measurement_), offset);

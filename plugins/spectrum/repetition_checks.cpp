@@ -9,6 +9,8 @@
 #include <numbers>
 
 #include "line_response.hpp"
+#include "lines.hpp"
+#include "signals.hpp"
 
 namespace bodeflow::spectrum {
 namespace {
@@ -16,6 +18,11 @@ namespace {
 constexpr double kSamePhases = 0.01;  // of the power; random phases differ by twice the power
 constexpr double kNoise = 4.0;        // times what noise explains on average, summed over lines
 constexpr std::size_t kLinesToCompare = 3;
+constexpr double kCarries = 0.01;       // of the power of the strongest line
+constexpr double kScatter = 0.1;        // of the power of single periods
+constexpr double kMostlyScatter = 0.5;  // the same, where no floor of noise is seen
+constexpr double kOverFloor = 10.0;     // power
+constexpr std::size_t kLinesOfFloor = 10;
 constexpr double kSignificant = 5.0;  // standard deviations
 constexpr double kByChance = 0.01;
 constexpr double kShareOfRadius = 0.5;
@@ -118,7 +125,66 @@ double bias_in_radii(const Judged& j, Eigen::Index signal, double slope) {
   return worst;
 }
 
+/// How the power of the excitation divides into what repeats and what does not.
+struct Repetition {
+  double repeated = 0.0, scatter = 0.0;  // power of single periods at the lines that carry it
+  std::size_t carrying = 0, lines = 0;   // lines that carry power; all
+  double floor = 0.0;                    // mean scatter at the others
+  std::vector<std::int64_t> left_out;    // carry power that repeats, and are not in the estimate
+};
+
+Repetition repetition_of(const Judged& j) {
+  const Excitation x = excitation_of(j.measured, 0);
+  const Eigen::Index highest = (j.measured.period - 1) / 2;
+  const auto periods = static_cast<double>(j.measured.parts.front().periods);
+  const Eigen::VectorXd all = x.power + (periods - 1.0) * x.variance;
+  const double least = kCarries * all.segment(1, highest).maxCoeff();
+  Repetition r;
+  r.lines = static_cast<std::size_t>(highest);
+  for (Eigen::Index k = 1; k <= highest; ++k) {
+    const double scatter = periods * x.variance[k];
+    if (all[k] < least) {
+      r.floor += scatter;
+      continue;
+    }
+    ++r.carrying;
+    r.repeated += x.power[k];
+    r.scatter += scatter;
+    const bool repeats = x.power[k] >= least && x.power[k] > kOverFloor * x.variance[k];
+    if (repeats && !std::binary_search(j.estimate.lines.begin(), j.estimate.lines.end(), k)) r.left_out.push_back(k);
+  }
+  if (r.carrying < r.lines) r.floor /= static_cast<double>(r.lines - r.carrying);
+  return r;
+}
+
+bool repeats(const Repetition& r) {
+  const double share = r.scatter / (r.repeated + r.scatter);
+  if (r.lines - r.carrying < kLinesOfFloor) return share < kMostlyScatter;
+  return share < kScatter || r.scatter / static_cast<double>(r.carrying) < kOverFloor * r.floor;
+}
+
 }  // namespace
+
+void unrepeated(const Judged& j, std::vector<std::string>& out) {
+  if (!j.measured.has_noise()) return;
+  const Repetition r = repetition_of(j);
+  const std::string signal = j.measured.layout.references > 0 ? "reference" : "input";
+  if (!repeats(r)) {
+    std::string text = "the periods of the " + signal +
+                       " do not repeat: " + number(100.0 * r.scatter / (r.repeated + r.scatter)) +
+                       " % of its power changes from one period of " + std::to_string(j.measured.period) + " samples to the next";
+    if (j.found_lines)
+      text += ", and " + std::to_string(j.estimate.lines.size()) + " of " +
+              counted(static_cast<std::int64_t>(r.carrying), "line") + " with power are kept";
+    out.push_back(text + "; give the period of the excitation or a multiple of it, and a start after its transient");
+    return;
+  }
+  if (!j.found_lines || r.left_out.empty()) return;
+  out.push_back(counted(static_cast<std::int64_t>(r.left_out.size()), "line") + " of the " + signal +
+                " with a tenth of the strongest or more are left out, the first at " +
+                short_number(static_cast<double>(r.left_out.front()) * j.line_hz) +
+                " Hz: name the lines, or set lines.threshold lower, if they are excited");
+}
 
 void same_phases(const Judged& j, std::vector<std::string>& out) {
   if (j.estimate.lines.size() < kLinesToCompare) return;

@@ -14,6 +14,12 @@ namespace bodeflow::spectrum {
 /// not judged: their random phases may agree by chance.
 void same_phases(const Judged& judged, std::vector<std::string>& out);
 
+/// An excitation that does not repeat: of the power of single periods at the lines that carry it (a hundredth of the strongest
+/// or more), a tenth or more is scatter between periods, ten times the scatter at the lines that carry none; where fewer than 10
+/// lines carry none, half or more is. White noise, however strong, scatters alike at all lines and is left to the check of a weak
+/// input. Else, where lines were found by a threshold, how many were left out that carry power.
+void unrepeated(const Judged& judged, std::vector<std::string>& out);
+
 /// Signals that drift: the trend of the means of the periods is significant, and what a ramp of that slope adds to one of the
 /// lowest three lines is more than half of the confidence radius there. Needs 3 periods; where Moments::trend is left out,
 /// nothing is said.

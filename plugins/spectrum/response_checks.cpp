@@ -22,6 +22,8 @@ constexpr double kTransient = 1.5;         // of the usual distance of a period,
 constexpr double kWorstCondition = 20.0;   // 26 dB of noise amplification at worst
 constexpr double kDistortionOverNoise = 3.0;
 constexpr double kNearNyquist = 0.8;
+constexpr double kAliased = 0.01;    // of the strongest line
+constexpr double kDriven = 0.1;      // of the output's level, both beside their strongest lines
 constexpr double kRounding = 1e-10;  // of the excited lines: what a transform leaves between them
 
 std::string number(double x) {
@@ -75,15 +77,19 @@ void left_out(const Judged& j, std::vector<std::string>& out) {
                 list + (count > 10 ? ", ..." : "") + "): look for what disturbed them");
 }
 
+/// The signal that the response is divided by: the input, or the reference.
 void weak_input(const Judged& j, std::vector<std::string>& out) {
-  if (!j.measured.has_noise() || j.form == Form::reference) return;
+  if (!j.measured.has_noise()) return;
+  const Layout& l = j.measured.layout;
+  const bool reference = j.form == Form::reference;
+  const Eigen::Index first = reference ? l.inputs + l.outputs : 0, count = reference ? l.references : l.inputs;
   std::vector<std::int64_t> bad;
   double worst = std::numeric_limits<double>::infinity(), worst_hz = 0.0;
   for (const std::int64_t k : j.estimate.lines) {
     double snr = std::numeric_limits<double>::infinity();
     for (std::size_t m = 0; m < j.measured.realisations(); ++m) {
       // The best driven experiment counts: one at a time, the others are silent by design.
-      for (Eigen::Index a = 0; a < j.measured.layout.inputs; ++a) {
+      for (Eigen::Index a = first; a < first + count; ++a) {
         double power = 0.0, variance = 0.0;
         for (Eigen::Index e = 0; e < j.measured.experiments; ++e) {
           power += std::norm(j.measured.part(m, e).mean(k, a));
@@ -97,8 +103,9 @@ void weak_input(const Judged& j, std::vector<std::string>& out) {
     if (snr < worst) worst = snr, worst_hz = static_cast<double>(k) * j.line_hz;
   }
   if (bad.empty()) return;
-  out.push_back("the input stands less than 10 dB above its own noise at " + lines_text(bad, j.estimate.lines.size(), j.line_hz) +
-                ", at worst " + number(10.0 * std::log10(worst)) + " dB at " + short_number(worst_hz) +
+  out.push_back(std::string(reference ? "the reference" : "the input") + " stands less than 10 dB above its own noise at " +
+                lines_text(bad, j.estimate.lines.size(), j.line_hz) + ", at worst " + number(10.0 * std::log10(worst)) +
+                " dB at " + short_number(worst_hz) +
                 " Hz: the response is biased there; put more amplitude on these lines, average more periods, or leave them out");
 }
 
@@ -138,6 +145,28 @@ void beside_excited(const Judged& j, std::vector<std::string>& out) {
       "distorts; check the period, skip more periods, or use a reference");
 }
 
+void constant_output(const Judged& j, std::vector<std::string>& out) {
+  for (Eigen::Index i = 0; i < j.measured.layout.outputs; ++i) {
+    const Eigen::Index a = j.measured.layout.inputs + i;
+    const bool changes = std::any_of(j.measured.parts.begin(), j.measured.parts.end(), [&](const Moments& m) {
+      return m.mean.col(a).tail(m.mean.rows() - 1).cwiseAbs2().maxCoeff() > 0.0;
+    });
+    if (changes) continue;
+    out.push_back("output '" + j.names[static_cast<std::size_t>(a)] +
+                  "' is constant: its response and variance are zero; is it connected, and is it the right channel?");
+  }
+}
+
+/// Level of a signal between two lines beside its strongest line, noise taken off.
+double level_between(const Moments& m, Eigen::Index signal, Eigen::Index from, Eigen::Index to,
+                     const std::vector<std::int64_t>& lines) {
+  double largest = 0.0;
+  for (const std::int64_t k : lines) largest = std::max(largest, std::norm(m.mean(k, signal)));
+  const double power =
+      (m.mean.col(signal).segment(from, to - from + 1).cwiseAbs2() - m.variance.col(signal).segment(from, to - from + 1)).sum();
+  return largest > 0.0 ? std::sqrt(std::max(0.0, power) / static_cast<double>(to - from + 1) / largest) : 0.0;
+}
+
 void aliasing(const Judged& j, std::vector<std::string>& out) {
   const double nyquist = 0.5 * static_cast<double>(j.measured.period);
   const auto last = static_cast<double>(j.estimate.lines.back());
@@ -155,10 +184,12 @@ void aliasing(const Judged& j, std::vector<std::string>& out) {
       if (!m.has_noise()) continue;
       const double power = m.mean.col(a).segment(from, to - from + 1).squaredNorm();
       const double noise = m.variance.col(a).segment(from, to - from + 1).sum();
-      double largest = 0.0;
-      for (const std::int64_t k : j.estimate.lines) largest = std::max(largest, std::norm(m.mean(k, a)));
-      const double level = std::sqrt(power / static_cast<double>(to - from + 1) / largest);
-      if (level < 0.01 || power < kLeastSnr * noise) continue;
+      const double level = level_between(m, a, from, to, j.estimate.lines);
+      if (level < kAliased || power < kLeastSnr * noise) continue;
+      double driven = 0.0;  // by what the input has there
+      for (Eigen::Index b = 0; b < j.measured.layout.inputs; ++b)
+        driven = std::max(driven, level_between(m, b, from, to, j.estimate.lines));
+      if (driven > kDriven * level) continue;
       out.push_back(
           "output '" + j.names[static_cast<std::size_t>(a)] + "' repeats " + number(100.0 * level) +
           " % of its strongest line right below the Nyquist frequency, where nothing is excited: it is probably aliased; use an "
@@ -198,7 +229,13 @@ void distortion(const Judged& j, std::vector<std::string>& out) {
   const Estimate& e = j.estimate;
   if (e.nonlinear_variance.size() > 0) {
     const double nonlinear = e.nonlinear_variance.sum() / static_cast<double>(e.realisations), noise = e.noise_variance.sum();
-    if (nonlinear > kDistortionOverNoise * kDistortionOverNoise * noise) {
+    const double response = e.response.squaredNorm();
+    if (!(nonlinear > kRounding * kRounding * response)) return;
+    if (!(noise > kRounding * kRounding * response)) {
+      out.push_back("stochastic nonlinear distortion is " + number(100.0 * std::sqrt(nonlinear / response)) +
+                    " % of the response in the mean of the realisations, and there is no noise: measure more realisations, or "
+                    "with another amplitude");
+    } else if (nonlinear > kDistortionOverNoise * kDistortionOverNoise * noise) {
       out.push_back("stochastic nonlinear distortion is " + number(std::sqrt(nonlinear / noise)) +
                     " times the noise: more periods won't help; measure more realisations, or with another amplitude");
     }
@@ -274,10 +311,11 @@ std::vector<std::string> response_warnings(const Judged& judged) {
   const auto run = [&](std::initializer_list<void (*)(const Judged&, std::vector<std::string>&)> checks) {
     for (const auto check : checks) check(judged, out);
   };
-  run({few_periods, left_out, weak_input, wrong_period, beside_excited});
+  run({few_periods, left_out, weak_input, wrong_period, unrepeated, beside_excited});
   const std::size_t before = out.size();
   drift(judged, out);
   const bool drifts = out.size() > before;
+  run({constant_output});
   if (!drifts) aliasing(judged, out);
   run({transient, condition, same_phases});
   if (!drifts) distortion(judged, out);

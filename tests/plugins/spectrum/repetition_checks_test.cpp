@@ -17,11 +17,12 @@ constexpr int kSamples = 128;
 const std::vector<std::int64_t> kLines = lines_of(1, 39, 2);
 using Texts = std::vector<std::string>;
 
-Texts warnings(const Measured& m, const std::vector<std::int64_t>& lines, Form form = Form::errors_in_variables) {
-  const auto e = estimate_response(m, {lines, 0.0}, form);
+/// lines: empty for those above a threshold of 0.3.
+Texts warnings(const Measured& m, const std::vector<std::int64_t>& lines) {
+  const auto e = estimate_response(m, {lines, lines.empty() ? 0.3 : 0.0}, Form::errors_in_variables);
   REQUIRE(e);
   const Levels levels = levels_of(m, e->lines, e->lines.front(), e->lines.back());
-  return response_warnings({m, *e, levels, form, 2.0, {"u", "y", "r"}});
+  return response_warnings({m, *e, levels, Form::errors_in_variables, 2.0, {"u", "y"}, lines.empty()});
 }
 
 /// 7 realisations of 3 periods of y = u + 0.2 u^3 + noise; every `repeat` of them have the same phases.
@@ -121,4 +122,85 @@ TEST_CASE("checks: a drift is told as soon as it shifts the lowest line by a con
   for (int repeat = 0; repeat < 300; ++repeat) {
     CHECK_FALSE(warns_of_drift(warnings(drifting(3 + repeat % 3, 0.0, 0.0, random), kLines)));
   }
+}
+
+TEST_CASE("checks: rounding of exact data is neither noise nor distortion") {
+  numerics::Random random(9);
+  Measured linear{{1, 1, 0}, kSamples, 1, {}}, cubic = linear;
+  for (int r = 0; r < 7; ++r) {
+    const Eigen::VectorXd u = random_multisine(kSamples, kLines, 0.3, random);
+    AveragingDft one(kSamples, 1), other(kSamples, 1);
+    for (int p = 0; p < 4; ++p) {
+      one.add(u, 0.7 * u);
+      other.add(u, u + 0.2 * u.cwiseProduct(u).cwiseProduct(u));
+    }
+    linear.parts.push_back(*one.moments());
+    cubic.parts.push_back(*other.moments());
+  }
+  CHECK(warnings(linear, kLines) == Texts{});
+  // Lines of u^3 above the Nyquist frequency fold back: that is told of as well.
+  const Texts found = warnings(cubic, kLines);
+  CAPTURE(found);
+  REQUIRE(!found.empty());
+  CHECK(found.back().substr(0, 40) == "stochastic nonlinear distortion is 7.04 ");
+  CHECK(found.back().substr(40) ==
+        "% of the response in the mean of the realisations, and there is no noise: measure more realisations, or with another "
+        "amplitude");
+}
+
+TEST_CASE("checks: periods that do not repeat, of a period that is not that of the excitation") {
+  const auto measured = [](int period, double deviation) {
+    numerics::Random random(10);
+    const Eigen::VectorXd u = random_multisine(500, lines_of(1, 99), 0.2, random);
+    AveragingDft average(period, 1);
+    for (int p = 0; p < 4500 / period; ++p) {
+      Eigen::VectorXd x(period);
+      for (int n = 0; n < period; ++n) x[n] = u[(p * period + n) % 500];
+      average.add(x + noise(period, 0.1 * deviation, random), x + noise(period, deviation, random));
+    }
+    return Measured{{1, 1, 0}, period, 1, {*average.moments()}};
+  };
+  const auto first = [&](int period, const char* of) {
+    for (const double deviation : {1e-4, 0.03}) {
+      const Texts found = warnings(measured(period, deviation), {});
+      CAPTURE(period, deviation, found);
+      CHECK(std::any_of(found.begin(), found.end(), [&](const std::string& text) {
+        return text.rfind("the periods of the input do not repeat: ", 0) == 0 &&
+               text.find(" % of its power changes from one period of " + std::to_string(period) + " samples to the next, and " +
+                         of + "; give the period of the excitation or a multiple of it, and a start after its transient") !=
+                   std::string::npos;
+      }));
+    }
+  };
+  first(250, "40 of 50 lines with power are kept");
+  first(400, "19 of 82 lines with power are kept");
+  CHECK(warnings(measured(500, 0.01), {}) == Texts{});
+  CHECK(warnings(measured(1000, 0.01), {}) == Texts{});
+}
+
+TEST_CASE("checks: white noise on the input is no wrong period") {
+  numerics::Random random(11);
+  for (int repeat = 0; repeat < 100; ++repeat) {
+    const Eigen::VectorXd u = random_multisine(kSamples, kLines, 0.3, random);
+    AveragingDft average(kSamples, 1);
+    for (int p = 0; p < 40; ++p) average.add(u + noise(kSamples, 0.8, random), u + noise(kSamples, 0.5, random));
+    for (const auto& lines : {kLines, std::vector<std::int64_t>{}}) {
+      for (const std::string& text : warnings(Measured{{1, 1, 0}, kSamples, 1, {*average.moments()}}, lines)) {
+        CHECK(text.find("do not repeat") == std::string::npos);
+        CHECK(text.find("left out") == std::string::npos);
+      }
+    }
+  }
+}
+
+TEST_CASE("checks: lines that carry power and that the threshold leaves out") {
+  numerics::Random random(12);
+  const Eigen::VectorXd u =
+      random_multisine(kSamples, lines_of(1, 19, 2), 0.3, random) + random_multisine(kSamples, lines_of(21, 39, 2), 0.06, random);
+  AveragingDft average(kSamples, 1);
+  for (int p = 0; p < 6; ++p) average.add(u + noise(kSamples, 0.001, random), u + noise(kSamples, 0.01, random));
+  const Measured m{{1, 1, 0}, kSamples, 1, {*average.moments()}};
+  CHECK(warnings(m, {}) == Texts{"10 lines of the input with a tenth of the strongest or more are left out, the first at 42 Hz: "
+                                 "name the lines, or set lines.threshold lower, if they are excited"});
+  CHECK(warnings(m, kLines) == Texts{});
 }

@@ -1,5 +1,7 @@
 #include "spectrum/response_checks.hpp"
 
+#include <algorithm>
+
 #include "catch.hpp"
 #include "periodic.hpp"
 #include "spectrum/averaging_dft.hpp"
@@ -111,6 +113,44 @@ TEST_CASE("checks: aliasing, of the excitation and into the output") {
   CHECK(found[0].find(
             "of its strongest line right below the Nyquist frequency, where nothing is excited: it is probably aliased") !=
         std::string::npos);
+}
+
+TEST_CASE("checks: what the input itself has below the Nyquist frequency is not aliased") {
+  Noisy e;
+  const auto all = lines_of(1, 127);
+  const Signal u = [&](int, int n) { return tone(all, n) + e(0.05); };
+  const Signal y = [&](int, int n) { return 0.1 * tone(all, n) + 0.9 * tone(kLines, n) + e(0.05); };
+  CHECK(warnings(6, u, y, lines_of(1, 60)) == Texts{});
+}
+
+TEST_CASE("checks: an output that is constant") {
+  Noisy e;
+  const Signal u = [&](int, int n) { return tone(kLines, n) + e(0.05); };
+  for (const double level : {0.0, 3.3}) {
+    CHECK(warnings(6, u, [&](int, int) { return level; }) ==
+          Texts{"output 'y' is constant: its response and variance are zero; is it connected, and is it the right channel?"});
+  }
+}
+
+TEST_CASE("checks: a reference that is noisy, where the response is taken from it") {
+  Noisy e;
+  AveragingDft average(kSamples, Layout{1, 1, 1});
+  for (int p = 0; p < 6; ++p) {
+    Eigen::MatrixXd frame(kSamples, 3);
+    for (int n = 0; n < kSamples; ++n) frame.row(n) << tone(kLines, n), tone(kLines, n), tone(kLines, n) + e(20.0);
+    average.add(frame);
+  }
+  const Measured m{{1, 1, 1}, kSamples, 1, {*average.moments()}};
+  for (const Form form : {Form::reference, Form::errors_in_variables}) {
+    const auto estimate = estimate_response(m, {kLines, 0.0}, form);
+    REQUIRE(estimate);
+    const Levels levels = levels_of(m, estimate->lines, kLines.front(), kLines.back());
+    const Texts found = response_warnings({m, *estimate, levels, form, 2.0, {"u", "y", "r"}});
+    const bool told = std::any_of(found.begin(), found.end(), [](const std::string& t) {
+      return t.rfind("the reference stands less than 10 dB above its own noise at ", 0) == 0;
+    });
+    CHECK(told == (form == Form::reference));
+  }
 }
 
 TEST_CASE("checks: a transient that is not over") {

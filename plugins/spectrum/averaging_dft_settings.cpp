@@ -63,6 +63,8 @@ LineChoice line_choice(const Parameters& p, std::int64_t period) {
   LineChoice choice;
   choice.candidates = p.integers("lines.list");
   const bool listed = !choice.candidates.empty();
+  if (p.given("lines.list") && !listed)
+    fail("lines: list is empty; name one line or more, or leave it out: the excited lines then");
   if (ranged && listed) fail("lines: give either list, or first, last and step");
   choice.threshold = p.has("lines.threshold") ? p.number("lines.threshold") : ranged || listed ? 0.0 : kDefaultThreshold;
   if (ranged) {

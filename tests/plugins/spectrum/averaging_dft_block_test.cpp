@@ -198,6 +198,8 @@ TEST_CASE("averaging_dft: lines that contradict each other are refused") {
   CHECK(refusal_of_lines([](Block& b) {
           b.set("lines.list", std::vector<std::int64_t>{3, 3});
         }) == "lines: list does not rise: 3 after 3");
+  CHECK(refusal_of_lines([](Block& b) { b.set("lines.list", std::vector<std::int64_t>{}); }) ==
+        "lines: list is empty; name one line or more, or leave it out: the excited lines then");
   CHECK(refusal_of_lines([](Block& b) {
           b.set("lines.list", std::vector<std::int64_t>{3}).set("lines.first", std::int64_t{1});
         }) == "lines: give either list, or first, last and step");

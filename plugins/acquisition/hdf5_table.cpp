@@ -114,8 +114,8 @@ void check_written(hid_t dataset, const Source& s) {
   h5::check(H5Dget_num_chunks(dataset, space.id(), &written), what + " can't be read");
   if (written == 0) fail(what + " holds no values: none was ever written");
   if (written < chunks / kSparsest)
-    fail(what + " has " + std::to_string(chunks) + " chunks, but only " + std::to_string(written) +
-         " were ever written; the others hold no values");
+    fail(what + " has " + std::to_string(chunks) + " chunks of which all but " + std::to_string(written) +
+         " hold no values: they were never written");
 }
 
 /// The data set opened with room for its chunks, taken from `room`. Ends with Failure where there is not enough.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "response_record.hpp"
 
@@ -182,13 +183,12 @@ class Adviser {
         static_cast<double>(p_.schedule.period) * static_cast<double>(periods_) * static_cast<double>(p_.schedule.count());
     const std::vector<double> known = output_.note("noise.std"), input_noise = input_.note("noise.std");
     const double noise = known.empty() ? 1.0 : known.front();
-    const double deviation = 2.0 * noise / (amplitude * std::sqrt(samples));
+    const double of_magnitude = std::numbers::sqrt2 / (amplitude * std::sqrt(samples));  // half of E|dG|^2 is along G
     const std::string unit = ratio_unit(output_.unit, input_.unit);
-    std::string text = "expected standard deviation of G: " + number(deviation) + (unit.empty() || unit == "1" ? "" : " " + unit);
+    std::string text = "expected std of |G|: " + number(of_magnitude * noise) + (unit.empty() || unit == "1" ? "" : " " + unit);
     text += known.empty() ? " per unit of white noise on the output" : " from the white noise of the output";
     if (!input_noise.empty() && input_noise.front() > 0.0) {
-      text += ", with " + number(2.0 * input_noise.front() / (amplitude * std::sqrt(samples))) +
-              " |G| from that of the input in quadrature";
+      text += ", with " + number(of_magnitude * input_noise.front()) + " |G| from that of the input in quadrature";
     }
     text += ", at lines of median amplitude " + number(amplitude) +
             (p_.schedule.experiments > 1 ? " of orthogonal experiments" : "") + "; 4 times the periods would halve it, in " +

@@ -24,12 +24,13 @@ struct Remark {
 
 /// What can be said of it from what is known of the streams (their notes): time and whole periods; whether the period is that of
 /// the excitation; the excited band beside the Nyquist frequency, the lines asked for and the plant's modes; settling time beside
-/// the skipped periods; crest factor; the standard deviation of G that the noise lets expect, and what four times the periods
+/// the skipped periods; crest factor; the standard deviation of |G| that the noise lets expect, and what four times the periods
 /// would give.
 ///
-/// With white noise of standard deviation s on the output, std G = 2 s / (a sqrt(N P)) at a line of peak value a: var Y_p = s^2 /
-/// N, |U| = a / 2 (sqrt(N P E M) for E orthogonal experiments and M realisations); noise s_u on the input adds |G| s_u in quadrature
-/// to s. excitation: the reference where there is one, else the input.
+/// With white noise of standard deviation s on the output, E|dG|^2 = 4 s^2 / (a^2 N P) at a line of peak value a: var Y_p = s^2 / N,
+/// |U| = a / 2 (N P E M for E orthogonal experiments and M realisations). Half of it lies along G, so std |G| = sqrt(2) s / (a
+/// sqrt(N P)), what is told here and what a run tells. Noise s_u on the input adds |G| s_u in quadrature to s. excitation: the
+/// reference where there is one, else the input.
 std::vector<Remark> measurement_advice(const Planned& planned, const StreamFacts& excitation, const StreamFacts& input,
                                        const StreamFacts& output);
 

@@ -327,7 +327,7 @@ TEST_CASE("experiments: advice before a run") {
                               "the last 50 samples (0.5 periods) are not used",
                               "excited: 3 lines from 10 to 50 Hz, up to 0.1 of the Nyquist frequency (500 Hz)",
                               "the plant's mode at 200 Hz lies outside the excited band", "crest factor of the excitation: 1.7",
-                              "expected standard deviation of G: 0.0189 A/V from the white noise of the output, at lines of "
+                              "expected std of |G|: 0.01336 A/V from the white noise of the output, at lines of "
                               "median amplitude 2; 4 times the "
                               "periods would halve it, in 3.1 s"});
   const auto wrong = advice(150, 0);

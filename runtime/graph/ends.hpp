@@ -60,8 +60,8 @@ struct MessageOutput {
   const PortDescription* port = nullptr;
 };
 
-/// What `$phase.block[.port]` means; the port may be left out: the first output for records is meant. `phases` are those that may be referred to,
-/// `current` the phase in which the reference stands. Nothing: reported.
+/// What `$phase.block[.port]` means; the port may be left out: the first output for records is meant. `phases` are those that may
+/// be referred to, `current` the phase in which the reference stands. Nothing: reported.
 std::optional<MessageOutput> find_message_output(const EndText& end, const std::vector<Phase>& phases, const std::string& current,
                                                  Report& report);
 

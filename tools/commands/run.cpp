@@ -57,6 +57,8 @@ int run(const Session& session, const RunCommand& command) {
     if (!graph->title.empty()) fmt::print("{}\n", bold(graph->title));
     print_summary(ran.result);
     fmt::print("Run directory: {}\n", ran.directory.string());
+    const std::filesystem::path page = ran.directory / "report.html";
+    if (std::filesystem::exists(page)) fmt::print("Report: {}\n", page.string());
   }
   return ran.exit_code;
 }

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <filesystem>
+
 #include "commands/command.hpp"
 #include "commands/plans.hpp"
 #include "commands/run_graph.hpp"

@@ -47,9 +47,9 @@ struct Estimate {
 ///
 /// M > 1 realisations, the robust method: each has other phases, so nonlinear distortion scatters between them as well. G is the
 /// mean of the G^m (best linear approximation), `variance` its scatter 1/(M(M-1)) sum_m |G^m - G|^2 with M - 1 degrees,
-/// `noise_variance` 1/M^2 sum_m var G^m, `nonlinear_variance` M (variance - noise_variance), at least 0, hence biased upward where noise dominates, in its mean over
-/// lines as well; M (mean variance - mean noise_variance) is not. With a
-/// reference the T^m are averaged before G = T_y T_u^-1: what the input holds of distortion then averages out.
+/// `noise_variance` 1/M^2 sum_m var G^m, `nonlinear_variance` M (variance - noise_variance), at least 0, hence biased upward
+/// where noise dominates, in its mean over lines as well; M (mean variance - mean noise_variance) is not. With a reference the
+/// T^m are averaged before G = T_y T_u^-1: what the input holds of distortion then averages out.
 ///
 /// Assumptions: |U| well above its own deviation: G = Y/U is biased by about -G exp(-|U|^2/var_u), below 5e-5 of G from 10 dB on,
 /// and has no finite variance where U can come near zero. Without `reference` a loop around a weak excitation biases G.

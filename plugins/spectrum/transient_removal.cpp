@@ -12,15 +12,21 @@ namespace {
 
 constexpr Eigen::Index kParameters = 4;
 
-/// The bins nearest to `center` that are no multiples of the number of periods, between zero and the Nyquist frequency.
-std::vector<Eigen::Index> bins_beside(Eigen::Index center, Eigen::Index periods, Eigen::Index last) {
+/// The bins nearest to `center` that are no multiples of the number of periods; below zero and above the Nyquist frequency too.
+std::vector<Eigen::Index> bins_beside(Eigen::Index center, Eigen::Index periods) {
   std::vector<Eigen::Index> bins;
-  for (Eigen::Index r = 1; static_cast<Eigen::Index>(bins.size()) < TransientRemoval::kBins && r <= last; ++r) {
-    for (const Eigen::Index b : {center - r, center + r}) {
-      if (b >= 1 && b <= last && b % periods != 0) bins.push_back(b);
-    }
+  for (Eigen::Index r = 1; static_cast<Eigen::Index>(bins.size()) < TransientRemoval::kBins; ++r) {
+    if (r % periods == 0) continue;
+    bins.push_back(center - r);
+    bins.push_back(center + r);
   }
   return bins;
+}
+
+/// Bin b of the spectrum of `length` real samples, of which `half` has those up to the Nyquist frequency: Z(-b) = conj Z(b).
+std::complex<double> at_bin(const Eigen::VectorXcd& half, Eigen::Index length, Eigen::Index b) {
+  const Eigen::Index round = (b % length + length) % length;
+  return round < half.size() ? half[round] : std::conj(half[length - round]);
 }
 
 struct Fit {
@@ -29,7 +35,8 @@ struct Fit {
   Eigen::VectorXcd residuals;  // of the bins
 };
 
-Fit fit_transient(const Eigen::VectorXcd& spectrum, const std::vector<Eigen::Index>& bins, Eigen::Index center) {
+Fit fit_transient(const Eigen::VectorXcd& spectrum, Eigen::Index length, const std::vector<Eigen::Index>& bins,
+                  Eigen::Index center) {
   const auto count = static_cast<Eigen::Index>(bins.size());
   Eigen::MatrixXcd model(count, kParameters);
   Eigen::VectorXcd z(count);
@@ -37,7 +44,7 @@ Fit fit_transient(const Eigen::VectorXcd& spectrum, const std::vector<Eigen::Ind
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index b = bins[static_cast<std::size_t>(i)];
     const double r = static_cast<double>(b - center) / reach;
-    z[i] = spectrum[b];
+    z[i] = at_bin(spectrum, length, b);
     model.row(i) << 1.0, r, r * r, -r * z[i];
   }
   const double size = z.norm();
@@ -77,8 +84,8 @@ Expected<Moments> TransientRemoval::moments() const {
   if (periods < 2) {
     return unexpected("the transient is told from the steady state by at least 2 periods; found " + std::to_string(periods));
   }
-  const Eigen::Index length = periods * period_, last = (length - 1) / 2, signals = layout_.signals();
-  if (static_cast<Eigen::Index>(bins_beside(periods, periods, last).size()) < kBins) {
+  const Eigen::Index length = periods * period_, signals = layout_.signals();
+  if (length - period_ < 2 * kBins) {
     return unexpected("a period of " + std::to_string(period_) + " samples is too short to remove the transient");
   }
   numerics::RealDft dft(length);
@@ -98,11 +105,11 @@ Expected<Moments> TransientRemoval::moments() const {
   for (Eigen::Index k = 0; k < lines; ++k) {
     for (Eigen::Index a = 0; a < signals; ++a) m.mean(k, a) = spectra[static_cast<std::size_t>(a)][k * periods];
     if (k == 0 || 2 * k == period_) continue;
-    const std::vector<Eigen::Index> bins = bins_beside(k * periods, periods, last);
+    const std::vector<Eigen::Index> bins = bins_beside(k * periods, periods);
     const auto degrees = static_cast<double>(static_cast<Eigen::Index>(bins.size()) - kParameters);
     std::vector<Fit> fits;
     for (Eigen::Index a = 0; a < signals; ++a) {
-      Fit& fit = fits.emplace_back(fit_transient(spectra[static_cast<std::size_t>(a)], bins, k * periods));
+      Fit& fit = fits.emplace_back(fit_transient(spectra[static_cast<std::size_t>(a)], length, bins, k * periods));
       m.mean(k, a) -= fit.transient;
       fit.residuals *= std::sqrt((1.0 + fit.leverage) / degrees);
       m.variance(k, a) = fit.residuals.squaredNorm();

@@ -14,10 +14,12 @@ namespace bodeflow::spectrum {
 /// all other bins: they hold transient and noise alone, and the transient's spectrum is smooth. At each line and for each signal
 /// the kBins bins nearest to k P (no multiples of P) are fitted with
 ///   Z(r) = (b_0 + b_1 r + b_2 r^2) / (1 + a r),  r bins from k P,  as  Z = b_0 + b_1 r + b_2 r^2 - a r Z  by least squares,
-/// so one pole near the line is followed, as in the local rational method. b_0 is the transient at the line. The residuals give
-/// the covariances, with kBins - 4 degrees of freedom, enlarged by what b_0 is uncertain. Wrong where the transient is still
-/// strong at the end of the record and two resonances lie within some bins of each other; where noise is strongly coloured within
-/// 6 bins. Memory grows with the periods: all are kept until the end, up to kMostValues samples.
+/// so one pole near the line is followed, as in the local rational method. Below bin zero and above the Nyquist frequency stand
+/// the conjugates, Z(-r) = conj Z(r), so that the lines at the ends have bins on both sides as well: the noise of a bin and that
+/// of its conjugate are uncorrelated, E{Z^2} = 0. b_0 is the transient at the line. The residuals give the covariances, with
+/// kBins - 4 degrees of freedom, enlarged by what b_0 is uncertain. Wrong where the transient is still strong at the end of the
+/// record and two resonances lie within some bins of each other; where noise is strongly coloured within 6 bins. Memory grows
+/// with the periods: all are kept until the end, up to kMostValues samples.
 ///
 /// Reference: R. Pintelon, J. Schoukens, System Identification, 2nd ed. 2012, chapter 7 (local polynomial method for periodic
 /// excitation: transient and noise from the non-excited bins); T. McKelvey, G. Guerin, Non-parametric frequency response

@@ -6,6 +6,7 @@
 #include "catch.hpp"
 #include "periodic.hpp"
 #include "spectrum/averaging_dft.hpp"
+#include "spectrum/transient_removal.hpp"
 
 using namespace bodeflow;
 using namespace bodeflow::spectrum;
@@ -119,4 +120,39 @@ TEST_CASE("averaged DFT: circles of two experiments for two inputs cover the tru
     }
   }
   CHECK(inside / double(all) == Approx(0.95).margin(0.01));
+}
+
+TEST_CASE("transient removal: circles at all lines, those at both ends of the band too, cover the truth at 2 and 4 periods") {
+  const auto lines = lines_of(1, 30);
+  const int N = 64;
+  const double pole = 0.95;
+  const auto G = [&](int k) { return 0.05 / (1.0 - pole * std::polar(1.0, -2.0 * M_PI * k / N)); };
+  for (const int periods : {2, 4}) {
+    int inside = 0, at_ends = 0;
+    const int seeds = 300;
+    for (int seed = 0; seed < seeds; ++seed) {
+      numerics::Random random = numerics::Random::stream(12, static_cast<std::uint64_t>(seed));
+      const Eigen::VectorXd u = random_multisine(N, lines, 1.0, random), steady = filtered(u, G);
+      TransientRemoval removal(N, Layout{1, 1, 0});
+      double transient = -steady[N - 1];  // from rest
+      for (int p = 0; p < periods; ++p) {
+        Eigen::MatrixXd frame(N, 2);
+        frame << u, steady + noise(N, 0.3, random);
+        for (int n = 0; n < N; ++n) frame(n, 1) += transient *= pole;
+        removal.add(frame);
+      }
+      const auto e = estimate_response({{1, 1, 0}, N, 1, {*removal.moments()}}, {lines, 0.0}, Form::known_input);
+      REQUIRE(e);
+      for (Eigen::Index i = 0; i < 30; ++i) {
+        const double radius = numerics::confidence_radius(e->variance(i, 0), e->degrees_of_freedom(i, 0), 0.95);
+        const bool holds = std::abs(e->response(i, 0) - G(static_cast<int>(i) + 1)) <= radius;
+        inside += holds ? 1 : 0;
+        at_ends += holds && (i < 3 || i > 26) ? 1 : 0;
+      }
+    }
+    std::cout << "transient removed, P = " << periods << ": coverage " << inside / (0.3 * seeds)
+              << " %, at the three lines of each end " << at_ends / (0.06 * seeds) << " %\n";
+    CHECK(inside / (30.0 * seeds) == Approx(0.95).margin(0.01));
+    CHECK(at_ends / (6.0 * seeds) == Approx(0.95).margin(0.025));
+  }
 }

@@ -17,8 +17,9 @@ namespace bodeflow::spectrum {
 ///   X = 1/P sum_p X_p,   cov_ab = 1/(P(P-1)) sum_p (A_p - A) conj(B_p - B),   P - 1 degrees of freedom.
 ///
 /// Linear drift, x[n] = a n beside the signal, adds the same a / (exp(-2 pi i k / N) - 1) to line k of each period: a bias that
-/// no scatter shows, but the means of the periods (Moments::trend). Detrend::linear takes it off, with `a` by least squares from the means of all periods. A slope from the
-/// samples of one period would take part of the signal along: a periodic signal has a slope of its own within its period.
+/// no scatter shows, but the means of the periods (Moments::trend). Detrend::linear takes it off, with `a` by least squares from
+/// the means of all periods. A slope from the samples of one period would take part of the signal along: a periodic signal has a
+/// slope of its own within its period.
 ///
 /// Assumptions: periodic steady state (drop the transient), noise independent between periods. Disturbances that repeat
 /// with the period (nonlinear distortion) do not show in the covariance.

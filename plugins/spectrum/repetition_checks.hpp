@@ -9,9 +9,9 @@ namespace bodeflow::spectrum {
 
 // Checks of response_warnings that compare periods and realisations as wholes. Each adds at most one text a signal to `out`.
 
-/// Realisations whose excitation is that of the first one or of the one before: at the excited lines the squared difference is below 1 % of the power,
-/// beside what noise explains. Nonlinear distortion then repeats as well, and the scatter does not hold it. Fewer than 3 lines are
-/// not judged: their random phases may agree by chance.
+/// Realisations whose excitation is that of the first one or of the one before: at the excited lines the squared difference is
+/// below 1 % of the power, beside what noise explains. Nonlinear distortion then repeats as well, and the scatter does not hold
+/// it. Fewer than 3 lines are not judged: their random phases may agree by chance.
 void same_phases(const Judged& judged, std::vector<std::string>& out);
 
 /// An excitation that does not repeat: of the power of single periods at the lines that carry it (a hundredth of the strongest

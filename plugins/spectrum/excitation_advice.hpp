@@ -27,8 +27,8 @@ struct Remark {
 /// the skipped periods; crest factor; the standard deviation of |G| that the noise lets expect, and what four times the periods
 /// would give.
 ///
-/// With white noise of standard deviation s on the output, E|dG|^2 = 4 s^2 / (a^2 N P) at a line of peak value a: var Y_p = s^2 / N,
-/// |U| = a / 2 (N P E M for E orthogonal experiments and M realisations). Half of it lies along G, so std |G| = sqrt(2) s / (a
+/// With white noise of standard deviation s on the output, E|dG|^2 = 4 s^2 / (a^2 N P) at a line of peak value a: var Y_p = s^2 /
+/// N, |U| = a / 2 (N P E M for E orthogonal experiments and M realisations). Half of it lies along G, so std |G| = sqrt(2) s / (a
 /// sqrt(N P)), what is told here and what a run tells. Noise s_u on the input adds |G| s_u in quadrature to s. excitation: the
 /// reference where there is one, else the input.
 std::vector<Remark> measurement_advice(const Planned& planned, const StreamFacts& excitation, const StreamFacts& input,

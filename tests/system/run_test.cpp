@@ -154,16 +154,22 @@ TEST_CASE("rerun compares the files that blocks wrote, and refuses a run that di
   CHECK(run_bodeflow({"rerun", "same", "--out", "never"}, folder.path()).exit_code == 2);
 }
 
-TEST_CASE("a block that writes outside the run directory is refused with its name") {
+TEST_CASE("a block that writes outside the run directory, or over the run's own files, is refused with its name") {
   const Folder folder;
-  folder.write(
-      "escape.yaml",
-      "bodeflow: 1\nrun: {duration: 1 ms}\nblocks:\n  tone: {block: generators.sine, sample_rate: 10 kHz, frequency: 100 Hz}\n"
-      "  table: {block: output.csv, file: ../tone.csv}\nconnections:\n  - tone -> table\n");
-  const auto ended = run_bodeflow({"run", "escape.yaml", "--out", "out"}, folder.path());
-  CHECK(ended.exit_code == 1);
-  CHECK_THAT(ended.err, Contains("block 'table'"));
+  const auto writing = [&](const std::string& file) {
+    folder.write("escape.yaml",
+                 "bodeflow: 1\nrun: {duration: 1 ms}\nblocks:\n  tone: {block: generators.sine, sample_rate: 10 kHz, frequency: "
+                 "100 Hz}\n  table: {block: output.csv, file: " +
+                     file + "}\nconnections:\n  - tone -> table\n");
+    return run_bodeflow({"run", "escape.yaml", "--out", "out-" + std::filesystem::path(file).stem().string()}, folder.path());
+  };
+  const auto outside = writing("../tone.csv");
+  CHECK(outside.exit_code == 3);
+  CHECK_THAT(outside.err, Contains("escape.yaml:5:3: block 'table'"));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "tone.csv"));
+  const auto own = writing("data.h5");
+  CHECK(own.exit_code == 1);
+  CHECK_THAT(own.err, Contains("block 'table'"));
 }
 
 TEST_CASE("the graph in the README runs as it stands and measures the plant that it writes down") {

@@ -1,12 +1,11 @@
 #include "excitation_advice.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "response_record.hpp"
+#include "signals.hpp"
 
 namespace bodeflow::spectrum {
 namespace {
@@ -17,11 +16,7 @@ constexpr double kHighCrest = 3.5;
 // Periods and frequencies in notes are quotients of doubles.
 constexpr double kEqual = 1e-6;
 
-std::string number(double x) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", x);
-  return text.data();
-}
+std::string number(double x) { return short_number(x, 4); }
 
 class Adviser {
  public:

@@ -1,11 +1,9 @@
 #include "repetition_checks.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bodeflow/numerics/confidence.hpp>
 #include <cmath>
 #include <complex>
-#include <cstdio>
 #include <numbers>
 
 #include "line_response.hpp"
@@ -29,11 +27,7 @@ constexpr double kShareOfRadius = 0.5;
 constexpr std::size_t kLowestLines = 3;
 constexpr double kRounding = 1e-10;  // of the signal
 
-std::string number(double x) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", x);
-  return text.data();
-}
+std::string number(double x) { return short_number(x, 3); }
 
 /// Do two realisations have the same excitation at these lines?
 bool alike(const Judged& j, std::size_t one, std::size_t other) {

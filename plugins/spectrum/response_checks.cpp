@@ -4,7 +4,6 @@
 #include <array>
 #include <bodeflow/numerics/confidence.hpp>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
@@ -26,11 +25,7 @@ constexpr double kAliased = 0.01;    // of the strongest line
 constexpr double kDriven = 0.1;      // of the output's level, both beside their strongest lines
 constexpr double kRounding = 1e-10;  // of the excited lines: what a transform leaves between them
 
-std::string number(double x) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", x);
-  return text.data();
-}
+std::string number(double x) { return short_number(x, 3); }
 
 /// "3 of 24 lines (37 to 39 Hz ...": lines as a text.
 std::string lines_text(const std::vector<std::int64_t>& bad, std::size_t all, double line_hz) {

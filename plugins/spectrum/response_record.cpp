@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bodeflow/numerics/confidence.hpp>
 
+#include "signals.hpp"
+
 namespace bodeflow::spectrum {
 namespace {
 
@@ -29,11 +31,8 @@ void put_if_any(RecordBuilder& record, const char* name, const std::string& unit
 struct Units {
   explicit Units(const Measurement& from)
       : inputs(from.units.begin(), from.units.begin() + from.layout.inputs),
-        outputs(from.units.begin() + from.layout.inputs, from.units.begin() + from.layout.inputs + from.layout.outputs) {
-    for (const std::string& above : outputs) {
-      for (const std::string& below : inputs) ratios.push_back(ratio_unit(above, below));
-    }
-  }
+        outputs(from.units.begin() + from.layout.inputs, from.units.begin() + from.layout.inputs + from.layout.outputs),
+        ratios(response_units(outputs, inputs)) {}
   std::vector<std::string> inputs, outputs, ratios;  // ratios: output by output
 };
 

@@ -27,9 +27,9 @@ std::vector<std::string> response_units(const std::vector<std::string>& output_u
   return units;
 }
 
-std::string short_number(double value) {
+std::string short_number(double value, int digits) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
 }
 

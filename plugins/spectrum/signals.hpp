@@ -21,8 +21,8 @@ Signals signals_of(const StreamFacts& facts, const std::string& port);
 std::vector<std::string> response_units(const std::vector<std::string>& output_units,
                                         const std::vector<std::string>& input_units);
 
-/// A number for a message: six significant digits.
-std::string short_number(double value);
+/// A number for a message, with so many significant digits.
+std::string short_number(double value, int digits = 6);
 
 /// "1 line", "3 lines".
 std::string counted(std::int64_t count, const std::string& noun);

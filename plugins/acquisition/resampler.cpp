@@ -16,18 +16,6 @@ constexpr std::int64_t kDriftPhases = 256;
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
 std::int64_t ceil_divide(std::int64_t a, std::int64_t b) { return -floor_divide(-a, b); }
 
-// Eight partial sums in a fixed order: wide registers are used and the bits do not depend on how wide they are.
-double dot(const double* a, const double* b, std::size_t count) {
-  constexpr std::size_t kLanes = 8;
-  double partial[kLanes] = {};
-  std::size_t j = 0;
-  for (; j + kLanes <= count; j += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) partial[lane] += a[j + lane] * b[j + lane];
-  }
-  for (std::size_t lane = 0; j < count; ++j, ++lane) partial[lane] += a[j] * b[j];
-  return ((partial[0] + partial[4]) + (partial[1] + partial[5])) + ((partial[2] + partial[6]) + (partial[3] + partial[7]));
-}
-
 numerics::LowPass design_of(const ResamplerSpec& spec, std::int64_t phases) {
   const double lower = std::min(1.0, static_cast<double>(spec.up) / static_cast<double>(spec.down));
   const double nyquist = lower / static_cast<double>(phases);
@@ -104,8 +92,8 @@ void Resampler::append(Frame& frame, std::span<const double> x) const {
 /// The output at input sample `whole` + phase / phases.
 double Resampler::at_phase(const Frame& frame, std::int64_t whole, std::int64_t phase) const {
   const std::int64_t taps = 2 * plan_.reach + 1;
-  return dot(frame.samples.data() + (whole - plan_.reach - frame.begin), table_.data() + (phase + 1) * taps,
-             static_cast<std::size_t>(taps));
+  return numerics::dot(frame.samples.data() + (whole - plan_.reach - frame.begin), table_.data() + (phase + 1) * taps,
+                       static_cast<std::size_t>(taps));
 }
 
 bool Resampler::run(std::int64_t channel, std::int64_t first, std::span<const double> x, std::span<double> y) {

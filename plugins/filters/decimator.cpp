@@ -6,18 +6,6 @@
 namespace bodeflow::filters {
 namespace {
 
-// Eight partial sums in a fixed order: wide registers are used and the bits do not depend on how wide they are.
-double dot(const double* a, const double* b, std::size_t count) {
-  constexpr std::size_t kLanes = 8;
-  double partial[kLanes] = {};
-  std::size_t j = 0;
-  for (; j + kLanes <= count; j += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) partial[lane] += a[j + lane] * b[j + lane];
-  }
-  for (std::size_t lane = 0; j < count; ++j, ++lane) partial[lane] += a[j] * b[j];
-  return ((partial[0] + partial[4]) + (partial[1] + partial[5])) + ((partial[2] + partial[6]) + (partial[3] + partial[7]));
-}
-
 // Kaiser's formula for the length is good to about 1 dB.
 constexpr double kMarginDb = 2.0;
 
@@ -30,7 +18,7 @@ void Decimator::run(std::span<const double> x, std::span<double> y) {
   const std::size_t past = taps_.size() - 1;
   std::copy(x.begin(), x.end(), frame_.begin() + static_cast<std::ptrdiff_t>(past));
   // The taps are symmetric: forward in time is as good as backward.
-  for (std::size_t m = 0; m < y.size(); ++m) y[m] = dot(frame_.data() + m * factor_, taps_.data(), taps_.size());
+  for (std::size_t m = 0; m < y.size(); ++m) y[m] = numerics::dot(frame_.data() + m * factor_, taps_.data(), taps_.size());
   std::copy_n(frame_.begin() + static_cast<std::ptrdiff_t>(x.size()), past, frame_.begin());
 }
 

@@ -64,6 +64,17 @@ Eigen::VectorXd low_pass(const LowPass& design, Eigen::Index half) {
   return taps / taps.sum();
 }
 
+double dot(const double* a, const double* b, std::size_t count) {
+  constexpr std::size_t kLanes = 8;
+  double partial[kLanes] = {};
+  std::size_t j = 0;
+  for (; j + kLanes <= count; j += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) partial[lane] += a[j + lane] * b[j + lane];
+  }
+  for (std::size_t lane = 0; j < count; ++j, ++lane) partial[lane] += a[j] * b[j];
+  return ((partial[0] + partial[4]) + (partial[1] + partial[5])) + ((partial[2] + partial[6]) + (partial[3] + partial[7]));
+}
+
 std::complex<double> fir_response(const Eigen::VectorXd& taps, double fraction_of_nyquist) {
   std::complex<double> sum = 0;
   for (Eigen::Index j = 0; j < taps.size(); ++j) sum += std::polar(taps[j], -pi * fraction_of_nyquist * static_cast<double>(j));

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <cstddef>
 
 #include "bodeflow/numerics/error.hpp"
 
@@ -35,6 +36,10 @@ Expected<Eigen::Index> low_pass_half_length(const LowPass& design);
 /// low_pass_half_length Kaiser's formula is good to about 1 dB, so a design adds 2 dB where the figure must be kept. With a stop
 /// edge within a transition band's width of the Nyquist frequency the mirrored skirt adds up to 6 dB.
 Eigen::VectorXd low_pass(const LowPass& design, Eigen::Index half);
+
+/// sum_j a[j] b[j], j < count: one output of a filter. Eight partial sums in a fixed order: wide registers are used, and the
+/// bits do not depend on how wide they are.
+double dot(const double* a, const double* b, std::size_t count);
 
 /// H(exp(j pi f)) = sum_j h[j] exp(-j pi f j) at a fraction f of the Nyquist frequency.
 std::complex<double> fir_response(const Eigen::VectorXd& taps, double fraction_of_nyquist);

@@ -9,7 +9,7 @@
 #include "period_kernels.hpp"
 #include "period_selection.hpp"
 #include "response_checks.hpp"
-#include "signals.hpp"
+#include "records.hpp"
 #include "transient_removal.hpp"
 
 namespace bodeflow::spectrum {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "signals.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "signals.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "delay.hpp"
-#include "response_data.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "signals.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

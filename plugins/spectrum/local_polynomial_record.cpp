@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "response_data.hpp"
+#include "records.hpp"
 #include "response_record.hpp"
 
 namespace bodeflow::spectrum {

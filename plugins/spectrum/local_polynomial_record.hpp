@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "local_polynomial.hpp"
-#include "signals.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "signals.hpp"
+#include "records.hpp"
 #include "weighted_mean.hpp"
 
 namespace bodeflow::spectrum {

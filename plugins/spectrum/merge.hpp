@@ -3,7 +3,7 @@
 #include <bodeflow/error.hpp>
 #include <vector>
 
-#include "response_data.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 

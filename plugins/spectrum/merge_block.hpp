@@ -3,7 +3,7 @@
 #include <bodeflow/block.hpp>
 #include <vector>
 
-#include "response_data.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 

@@ -8,7 +8,7 @@
 
 #include "line_response.hpp"
 #include "lines.hpp"
-#include "signals.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "repetition_checks.hpp"
-#include "signals.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <bodeflow/numerics/confidence.hpp>
 
-#include "signals.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 namespace {
 
 using Complex = std::complex<double>;
 using Shape = std::initializer_list<std::uint64_t>;
-
-bool is_one(const std::string& unit) { return unit.empty() || unit == "1"; }
 
 /// Copies a matrix row by row, as records are; `shape` has as many elements as the matrix.
 template <class T, class Matrix>
@@ -62,23 +60,6 @@ const char* form_name(Form form) {
 }
 
 }  // namespace
-
-std::string ratio_unit(const std::string& above, const std::string& below) {
-  if (is_one(below)) return above;
-  if (above == below) return "1";
-  const bool simple = below.find_first_of("/* ") == std::string::npos;
-  return (is_one(above) ? "1" : above) + "/" + (simple ? below : "(" + below + ")");
-}
-
-std::string squared_unit(const std::string& unit) {
-  if (is_one(unit)) return unit;
-  return unit.find_first_of("/* ^") == std::string::npos ? unit + "^2" : "(" + unit + ")^2";
-}
-
-std::string common_unit(const std::vector<std::string>& units) {
-  const bool same = std::count(units.begin(), units.end(), units.front()) == static_cast<std::ptrdiff_t>(units.size());
-  return same ? units.front() : "";
-}
 
 void fill_frequencies(std::span<double> to, const std::vector<std::int64_t>& lines, const Rate& rate, std::int64_t period) {
   for (std::size_t k = 0; k < lines.size(); ++k) {

@@ -7,6 +7,7 @@
 
 #include "distortion.hpp"
 #include "estimate.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 
@@ -31,15 +32,6 @@ RecordBuilder response_record(const Estimate& estimate, const Levels& levels, co
 
 /// The record `spectral_levels` of the lines of a band.
 RecordBuilder levels_record(const Levels& levels, const Estimate& estimate, const Measurement& from);
-
-/// The unit of a ratio: "rad/A"; "rad" and "1/A" where one of them is without unit, "1" where they are equal.
-std::string ratio_unit(const std::string& above, const std::string& below);
-
-/// The square of a unit: "rad^2", "(rad/A)^2".
-std::string squared_unit(const std::string& unit);
-
-/// The unit that all have, or "" where they differ.
-std::string common_unit(const std::vector<std::string>& units);
 
 /// Frequencies of lines [Hz], into `to`: k * rate / period, rounded once.
 void fill_frequencies(std::span<double> to, const std::vector<std::int64_t>& lines, const Rate& rate, std::int64_t period);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "signals.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "averaging_dft_settings.hpp"
 #include "response_record.hpp"
-#include "signals.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

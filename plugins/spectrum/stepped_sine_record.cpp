@@ -4,7 +4,7 @@
 #include <bodeflow/numerics/confidence.hpp>
 #include <functional>
 
-#include "response_data.hpp"
+#include "records.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

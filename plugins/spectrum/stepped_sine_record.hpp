@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "signals.hpp"
+#include "records.hpp"
 #include "sine_response.hpp"
 
 namespace bodeflow::spectrum {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "signals.hpp"
+#include "records.hpp"
 #include "window.hpp"
 
 namespace bodeflow::spectrum {

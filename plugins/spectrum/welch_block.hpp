@@ -5,7 +5,7 @@
 
 #include "band.hpp"
 #include "sample_watch.hpp"
-#include "signals.hpp"
+#include "records.hpp"
 #include "welch.hpp"
 
 namespace bodeflow::spectrum {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "narrow_peaks.hpp"
-#include "response_data.hpp"
+#include "records.hpp"
 #include "response_record.hpp"
 #include "window.hpp"
 

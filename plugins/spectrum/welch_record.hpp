@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "signals.hpp"
+#include "records.hpp"
 #include "welch.hpp"
 
 namespace bodeflow::spectrum {

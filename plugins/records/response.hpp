@@ -8,7 +8,16 @@
 #include <string>
 #include <vector>
 
-namespace bodeflow::spectrum {
+namespace bodeflow::records {
+
+/// Mean spectra of one input and one output with the covariance of the noise on these means, one entry a line.
+struct MeanSpectra {
+  Eigen::VectorXcd input;           ///< U
+  Eigen::VectorXcd output;          ///< Y
+  Eigen::VectorXd input_variance;   ///< E|dU|^2
+  Eigen::VectorXd output_variance;  ///< E|dY|^2
+  Eigen::VectorXcd covariance;      ///< E(dY conj dU)
+};
 
 /// A frequency response in memory, with what its record says about it. Matrices have a line in each row and in column
 /// i * inputs + j the entry from input j to output i.
@@ -27,8 +36,9 @@ struct ResponseData {
   Eigen::VectorXd frequency_hz;
   std::vector<std::int64_t> lines;  ///< line numbers, or empty
   Eigen::MatrixXcd response;
-  Eigen::MatrixXd variance;           ///< E|dG|^2; empty where it is not known
-  Eigen::MatrixXd confidence_radius;  ///< empty: from `variance` and `degrees_of_freedom` when written
+  Eigen::MatrixXd variance;            ///< E|dG|^2; empty where it is not known
+  Eigen::MatrixXd confidence_radius;   ///< empty: from `variance` and `degrees_of_freedom` when written
+  std::optional<MeanSpectra> spectra;  ///< of one input and one output, where the record has them; read, not written
 
   Eigen::Index inputs() const { return static_cast<Eigen::Index>(input_names.size()); }
   Eigen::Index outputs() const { return static_cast<Eigen::Index>(output_names.size()); }
@@ -45,7 +55,4 @@ Expected<ResponseData> read_response(const RecordView& record);
 /// The record `frequency_response`, to which a method may add arrays of its own.
 RecordBuilder write_response(const ResponseData& data);
 
-/// Adds an array lines x columns.
-void put_matrix(RecordBuilder& record, const char* name, const std::string& unit, const Eigen::MatrixXd& m);
-
-}  // namespace bodeflow::spectrum
+}  // namespace bodeflow::records

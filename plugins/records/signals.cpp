@@ -2,9 +2,9 @@
 
 #include <cstdio>
 
-#include "response_record.hpp"
+#include "response_units.hpp"
 
-namespace bodeflow::spectrum {
+namespace bodeflow::records {
 
 Signals signals_of(const StreamFacts& facts, const std::string& port) {
   Signals s;
@@ -37,4 +37,4 @@ std::string counted(std::int64_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-}  // namespace bodeflow::spectrum
+}  // namespace bodeflow::records

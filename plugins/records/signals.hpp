@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace bodeflow::spectrum {
+namespace bodeflow::records {
 
 /// Names and units of some channels, one entry a channel.
 struct Signals {
@@ -27,4 +27,4 @@ std::string short_number(double value, int digits = 6);
 /// "1 line", "3 lines".
 std::string counted(std::int64_t count, const std::string& noun);
 
-}  // namespace bodeflow::spectrum
+}  // namespace bodeflow::records

@@ -1,4 +1,4 @@
-#include "response_data.hpp"
+#include "response.hpp"
 
 #include <algorithm>
 #include <bodeflow/numerics/confidence.hpp>
@@ -6,19 +6,14 @@
 #include <complex>
 #include <limits>
 
-#include "response_record.hpp"
+#include "record_arrays.hpp"
+#include "response_units.hpp"
 #include "signals.hpp"
 
-namespace bodeflow::spectrum {
+namespace bodeflow::records {
 namespace {
 
 using Complex = std::complex<double>;
-
-std::string shape_text(std::span<const std::uint64_t> shape) {
-  std::string text;
-  for (const std::uint64_t n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
-  return text.empty() ? "no dimension" : text;
-}
 
 std::vector<std::string> names_of(const RecordView& record, const char* attribute, std::size_t count, const char* otherwise) {
   std::vector<std::string> names;
@@ -27,21 +22,6 @@ std::vector<std::string> names_of(const RecordView& record, const char* attribut
   names.clear();
   for (std::size_t i = 0; i < count; ++i) names.push_back(count == 1 ? otherwise : otherwise + ("_" + std::to_string(i + 1)));
   return names;
-}
-
-/// The array as lines x columns, or why not. T: double or complex.
-template <class T>
-Expected<Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>> matrix_of(const ArrayView& array, Eigen::Index lines) {
-  const std::string name = "array '" + std::string(array.name) + "'";
-  if (array.element != kElementOf<T>) return unexpected(name + " holds " + element_name(array.element));
-  const auto columns = lines == 0 ? 0 : static_cast<Eigen::Index>(array.size) / lines;
-  using Rows = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> m = Eigen::Map<const Rows>(array.as<T>().data(), lines, columns);
-  for (Eigen::Index k = 0; k < lines; ++k) {
-    if (m.row(k).array().isFinite().all()) continue;
-    return unexpected(name + " is not finite at line " + std::to_string(k + 1) + " of " + std::to_string(lines));
-  }
-  return m;
 }
 
 Expected<Eigen::VectorXd> frequencies_of(const RecordView& record) {
@@ -59,14 +39,30 @@ Expected<Eigen::VectorXd> frequencies_of(const RecordView& record) {
   return Eigen::VectorXd(m->col(0));
 }
 
-template <class T, class Matrix>
-void put(RecordBuilder& record, const char* name, const std::string& unit, std::span<const std::uint64_t> shape,
-         const Matrix& m) {
-  const auto data = record.array<T>(name, unit, shape);
-  std::size_t at = 0;
-  for (Eigen::Index k = 0; k < m.rows(); ++k) {
-    for (Eigen::Index c = 0; c < m.cols(); ++c) data[at++] = m(k, c);
+/// The mean spectra, where the record has all of them for these lines; nothing where it has not.
+Expected<std::optional<MeanSpectra>> spectra_of(const RecordView& record, Eigen::Index lines) {
+  const char* names[] = {"input_mean", "output_mean", "input_variance", "output_variance", "cross_covariance"};
+  for (const char* name : names) {
+    const auto array = record.array(name);
+    if (!array || array->size != static_cast<std::size_t>(lines)) return std::optional<MeanSpectra>();
   }
+  MeanSpectra s;
+  Eigen::VectorXcd* complex_lists[] = {&s.input, &s.output, &s.covariance};
+  const char* complex_names[] = {"input_mean", "output_mean", "cross_covariance"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    auto list = matrix_of<Complex>(*record.array(complex_names[i]), lines);
+    if (!list) return unexpected(list.error().text);
+    *complex_lists[i] = list->col(0);
+  }
+  Eigen::VectorXd* real_lists[] = {&s.input_variance, &s.output_variance};
+  const char* real_names[] = {"input_variance", "output_variance"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    auto list = matrix_of<double>(*record.array(real_names[i]), lines);
+    if (!list) return unexpected(list.error().text);
+    *real_lists[i] = list->col(0);
+    if (real_lists[i]->minCoeff() < 0.0) return unexpected("array '" + std::string(real_names[i]) + "' has a negative value");
+  }
+  return std::optional<MeanSpectra>(std::move(s));
 }
 
 void read_attributes(const RecordView& record, ResponseData& d) {
@@ -128,6 +124,11 @@ Expected<ResponseData> read_response(const RecordView& record) {
     const auto values = numbers->as<std::int64_t>();
     d.lines.assign(values.begin(), values.end());
   }
+  if (inputs == 1 && outputs == 1) {
+    auto spectra = spectra_of(record, lines);
+    if (!spectra) return unexpected(spectra.error().text);
+    d.spectra = std::move(*spectra);
+  }
   return d;
 }
 
@@ -164,8 +165,4 @@ RecordBuilder write_response(const ResponseData& d) {
   return r;
 }
 
-void put_matrix(RecordBuilder& record, const char* name, const std::string& unit, const Eigen::MatrixXd& m) {
-  put<double>(record, name, unit, std::array{static_cast<std::uint64_t>(m.rows()), static_cast<std::uint64_t>(m.cols())}, m);
-}
-
-}  // namespace bodeflow::spectrum
+}  // namespace bodeflow::records

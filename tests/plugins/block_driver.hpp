@@ -121,10 +121,10 @@ class BlockDriver {
   std::vector<Channels> process(const std::vector<Channels>& inputs, std::uint64_t count) {
     return call(block_.process, inputs, count, nullptr);
   }
-  void receive(const RecordBuilder& record, double time_s) {
+  void receive(const RecordBuilder& record, double time_s, std::uint32_t port = 0) {
     bf_record* made = create(&host_, record.size());
     record.write(made->bytes);
-    const bf_message message{0, 0, time_s, made};
+    const bf_message message{port, 0, time_s, made};
     try {
       call(block_.process, std::vector<Channels>(count(BF_IN)), 0, &message);
     } catch (...) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <bodeflow/error.hpp>
+#include <bodeflow/record_view.hpp>
+#include <cmath>
+#include <string>
+
+namespace bodeflow::drive {
+
+/// Puts the property `name` of a record `bench_properties` in place of `value`; a record without it leaves the value alone.
+/// Throws Failure when the property is not a number from `least` to `most`.
+inline void take_property(const RecordView& record, const char* name, double least, double most, double& value) {
+  if (!record.attribute(name)) return;
+  const auto found = record.number(name);
+  if (!found) fail(std::string("property ") + name + " is not a number");
+  if (!(*found >= least && *found <= most)) {
+    fail(std::string("property ") + name + " = " + std::to_string(*found) + ", allowed: " + std::to_string(least) + " to " +
+         std::to_string(most));
+  }
+  value = *found;
+}
+
+}  // namespace bodeflow::drive

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <bodeflow/block.hpp>
+#include <vector>
+
+#include "sensor_errors.hpp"
+
+namespace bodeflow::drive {
+
+/// drive.voltage_sensor: a resistive divider with ratio error, offset and noise.
+class VoltageSensor final : public Block {
+ public:
+  static constexpr In<double> in{0, "in"};
+  static constexpr MessageIn properties{0, "properties"};
+  static constexpr Out<double> out{0, "out"};
+
+  static void describe(Describe& d);
+  void configure(const Parameters& p) override;
+  void resolve(Facts& f) override;
+  void activate(const Activation& a) override;
+  void receive(int port, const RecordView& record, Io& io) override;
+  void process(Io& io) override;
+  void reset() override;
+
+ private:
+  SensorErrors declared_, actual_;
+  bool own_seed_ = false;
+  std::uint64_t seed_ = 0;
+  int channels_ = 0;
+  double rate_hz_ = 0.0;
+  std::vector<numerics::Random> random_;
+};
+
+}  // namespace bodeflow::drive

@@ -40,6 +40,7 @@ class Checker {
       read_content(root_, {}, phase);
     }
     if (const Node* node = root_.find("hosts")) read_hosts(*node, graph_.phases, report_);
+    if (const Node* node = root_.find("summary")) graph_.summary = read_summary(*node, graph_.phases, report_);
     return std::move(graph_);
   }
 

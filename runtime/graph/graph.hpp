@@ -121,9 +121,16 @@ struct Phase {
   int block_index(const std::string& name) const;  ///< -1: none
 };
 
+/// What a run shows at its end.
+struct Summary {
+  std::vector<std::string> show;  ///< results by their names in result.json, in order; empty: all
+  std::string next;               ///< what to type next
+};
+
 struct Graph {
   std::string file;
   std::string title;
+  Summary summary;
   std::vector<Phase> phases;
   std::string expanded;  ///< the graph as one self-contained YAML text, overrides applied
 };

@@ -7,8 +7,8 @@
 namespace bodeflow::graph {
 
 const Names& graph_keys() {
-  static const Names kKeys = {"bodeflow", "title",       "run",      "include", "requires", "variables",
-                              "blocks",   "connections", "schedule", "record",  "phases",   "hosts"};
+  static const Names kKeys = {"bodeflow",    "title",    "run",    "include", "requires", "variables", "blocks",
+                              "connections", "schedule", "record", "phases",  "hosts",    "summary"};
   return kKeys;
 }
 

@@ -245,18 +245,21 @@ nlohmann::ordered_json schema(const Registry& registry) {
   const Json map_of_any = {{"type", Json::array({"object", "null"})}};
   const Json files = {{"type", "array"}, {"items", {{"type", "string"}}}};
   Json out = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "bodeflow graph"}};
-  out.update(object_of({{"bodeflow", {{"const", kFormat}, {"description", "version of the format"}}},
-                        {"title", {{"type", Json::array({"string", "null"})}}},
-                        {"run", reference("run")},
-                        {"include", described(files, "graph files whose blocks, connections and variables belong to this one")},
-                        {"requires", described(map_of_any, "plugin: '>=1.2'")},
-                        {"variables", described(map_of_any, "values for ${name}; one without a value must be set with --set")},
-                        {"blocks", reference("blocks")},
-                        {"connections", reference("connections")},
-                        {"schedule", reference("schedule")},
-                        {"record", reference("record")},
-                        {"phases", reference("phases")},
-                        {"hosts", described(map_of_any, "host: [blocks]; the rest runs where the graph was started")}}));
+  out.update(
+      object_of({{"bodeflow", {{"const", kFormat}, {"description", "version of the format"}}},
+                 {"title", {{"type", Json::array({"string", "null"})}}},
+                 {"run", reference("run")},
+                 {"include", described(files, "graph files whose blocks, connections and variables belong to this one")},
+                 {"requires", described(map_of_any, "plugin: '>=1.2'")},
+                 {"variables", described(map_of_any, "values for ${name}; one without a value must be set with --set")},
+                 {"blocks", reference("blocks")},
+                 {"connections", reference("connections")},
+                 {"schedule", reference("schedule")},
+                 {"record", reference("record")},
+                 {"phases", reference("phases")},
+                 {"hosts", described(map_of_any, "host: [blocks]; the rest runs where the graph was started")},
+                 {"summary", object_of({{"show", described(files, "results that a run prints, in this order; all otherwise")},
+                                        {"next", described({{"type", "string"}}, "what to type next, printed at the end")}})}}));
   out["required"] = {"bodeflow"};
   out["definitions"] = definitions(registry);
   return out;

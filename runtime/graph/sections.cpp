@@ -62,6 +62,22 @@ void keep(int block, const std::vector<const PortDescription*>& ports, Phase& ph
   }
 }
 
+/// The names under which results stand: a block's first output for records by the block's name, others with their own behind.
+Names result_names(const std::vector<Phase>& phases) {
+  Names names;
+  for (const auto& phase : phases)
+    for (const auto& block : phase.blocks) {
+      if (block.type == nullptr) continue;
+      std::string name = phase.name.empty() ? block.name : phase.name + "." + block.name;
+      bool first = true;
+      for (const auto* port : ports_of(*block.type, BF_OUT, BF_MESSAGE)) {
+        names.push_back(first ? name : name + "." + port->name);
+        first = false;
+      }
+    }
+  return names;
+}
+
 }  // namespace
 
 void read_schedule(Node& node, const BlockIndex& blocks, Phase& phase, Report& report) {
@@ -128,6 +144,26 @@ void read_hosts(const Node& node, std::vector<Phase>& phases, Report& report) {
       }
     }
   }
+}
+
+Summary read_summary(const Node& node, const std::vector<Phase>& phases, Report& report) {
+  Summary summary;
+  if (node.is_none() || !require_map(node, "summary", "a map such as {show: [response], next: text}", report)) return summary;
+  check_keys(node, "summary: ", {"show", "next"}, report);
+  if (const Node* next = node.find("next")) summary.next = read_text(*next, "summary: next", report).value_or("");
+  const Node* show = node.find("show");
+  if (show == nullptr || !require_list(*show, "summary: show", "a list of results such as [response, dft.levels]", report))
+    return summary;
+  const Names names = result_names(phases);
+  for (const auto& item : show->items) {
+    const auto name = read_text(item, "summary: show", report);
+    if (!name) continue;
+    if (std::find(names.begin(), names.end(), *name) == names.end())
+      report.add(item.spot, fmt::format("summary: show: no block gives a result {}{}; results: {}", quote(*name),
+                                        did_you_mean(*name, names), listed(names)));
+    summary.show.push_back(*name);
+  }
+  return summary;
 }
 
 }  // namespace bodeflow::graph

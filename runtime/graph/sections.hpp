@@ -15,4 +15,7 @@ void read_record(const Node& node, const BlockIndex& blocks, Phase& phase, Repor
 /// Reads `hosts` into Block::host of all phases.
 void read_hosts(const Node& node, std::vector<Phase>& phases, Report& report);
 
+/// Reads `summary`: names of results, each one that a block of the phases gives, and what to type next.
+Summary read_summary(const Node& node, const std::vector<Phase>& phases, Report& report);
+
 }  // namespace bodeflow::graph

@@ -57,10 +57,11 @@ int run(const Session& session, const RunCommand& command) {
     print_json(printed);
   } else if (ran.exit_code == kDone) {
     if (!graph->title.empty()) fmt::print("{}\n", bold(graph->title));
-    print_summary(ran.result);
+    print_summary(ran.result, graph->summary.show);
     fmt::print("Run directory: {}\n", ran.directory.string());
     const std::filesystem::path page = ran.directory / "report.html";
     if (std::filesystem::exists(page)) fmt::print("Report: {}\n", page.string());
+    if (!graph->summary.next.empty()) fmt::print("{}\n", graph->summary.next);
   }
   return ran.exit_code;
 }

@@ -159,19 +159,25 @@ void print_other(const Json& record) {
   }
 }
 
+void print_record(const std::string& name, const Json& record) {
+  fmt::print("{}: {}\n", bold(name), record["type"].get<std::string>());
+  if (is_response(record))
+    print_response(record);
+  else if (is_levels(record))
+    print_levels(record);
+  else
+    print_other(record);
+}
+
 }  // namespace
 
-void print_summary(const Json& result) {
+void print_summary(const Json& result, const std::vector<std::string>& show) {
   if (!result.contains("results")) return;
-  for (const auto& [name, record] : result["results"].items()) {
-    fmt::print("{}: {}\n", bold(name), record["type"].get<std::string>());
-    if (is_response(record))
-      print_response(record);
-    else if (is_levels(record))
-      print_levels(record);
-    else
-      print_other(record);
-  }
+  const Json& results = result["results"];
+  if (show.empty())
+    for (const auto& [name, record] : results.items()) print_record(name, record);
+  for (const auto& name : show)
+    if (results.contains(name)) print_record(name, results[name]);
 }
 
 }  // namespace bodeflow::tools

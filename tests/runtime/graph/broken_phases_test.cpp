@@ -106,6 +106,18 @@ g.yaml:2:78: run: threads: found 1000, allowed: 1 to 256
 g.yaml:2:94: run: watchdog: 'off' is not a number
 g.yaml:2:99: run: unknown key 'speed' (did you mean 'seed'?))y"},
 
+{"summary",
+R"y(bodeflow: 1
+phases:
+  - {name: one, blocks: {tuner: {block: control.tuner}, sine: {block: generators.sine}}}
+summary: {show: [one.tuner, one.tunr, one.sine, 3], then: x, next: [1]}
+)y",
+R"y(g.yaml:4:29: summary: show: no block gives a result 'one.tunr' (did you mean 'one.tuner'?); results: one.tuner
+g.yaml:4:39: summary: show: no block gives a result 'one.sine'; results: one.tuner
+g.yaml:4:49: summary: show: no block gives a result '3'; results: one.tuner
+g.yaml:4:53: summary: unknown key 'then'; allowed: show, next
+g.yaml:4:68: summary: next: found a list, allowed: a text)y"},
+
 {"hosts",
 R"y(bodeflow: 1
 blocks:

@@ -57,7 +57,7 @@ R"y(bodeflow: 1
 blocks: {}
 colour: red
 )y",
-R"y(g.yaml:3:1: unknown key 'colour'; allowed: bodeflow, title, run, include, requires, variables, blocks, connections, schedule, record, phases, hosts)y"},
+R"y(g.yaml:3:1: unknown key 'colour'; allowed: bodeflow, title, run, include, requires, variables, blocks, connections, schedule, record, phases, hosts, summary)y"},
 
 {"limits",
 R"y(bodeflow: 1

@@ -106,6 +106,12 @@ TEST_CASE("graph: record keeps stream outputs, all or named") {
   CHECK(kept("[]").empty());
 }
 
+TEST_CASE("graph: the summary names results as result.json does, and what to type next") {
+  const Graph graph = good(kBlocks + kWired + "summary: {show: [tuner, dft], next: type this}\n");
+  CHECK(graph.summary.show == std::vector<std::string>{"tuner", "dft"});
+  CHECK(graph.summary.next == "type this");
+}
+
 TEST_CASE("graph: hosts are noted in their blocks") {
   const Phase phase = good(kBlocks + kWired + "hosts: {bench: [motor, hold], desk-2: [dft]}\n").phases.at(0);
   CHECK(phase.blocks[motor].host == "bench");

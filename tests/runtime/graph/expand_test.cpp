@@ -97,6 +97,7 @@ schedule:
   - {at: 500 ms, block: gain, set: {gain: 3}}
 record: [motor, gain.out, dft]
 hosts: {bench: [excitation, hold, motor]}
+summary: {show: [dft], next: "bodeflow identify FILE --input u"}
 )y";
 
 const std::string kPhased = R"y(bodeflow: 1

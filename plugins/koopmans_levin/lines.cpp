@@ -85,14 +85,16 @@ Expected<Band> band_of(double low_rad, double high_rad, Eigen::Index samples) {
     return refused("the band [" + std::to_string(low_rad) + ", " + std::to_string(high_rad) +
                    "] rad/sample is not within 0 .. pi");
   }
-  // A bound that was rounded in the last digits still includes its line.
   const double lines_per_rad = static_cast<double>(samples) / (2.0 * kPi);
-  const double first = std::ceil(low_rad * lines_per_rad - 1e-9), last = std::floor(high_rad * lines_per_rad + 1e-9);
-  if (first > last) {
+  const double low = low_rad * lines_per_rad, high = high_rad * lines_per_rad;
+  const double first = std::round(low), last = std::round(high);
+  constexpr double kRounding = 1e-9;
+  if (std::ceil(low - kRounding) > std::floor(high + kRounding)) {
     return refused("no line lies in the band [" + std::to_string(low_rad) + ", " + std::to_string(high_rad) +
                    "] rad/sample: lines are " + std::to_string(1.0 / lines_per_rad) + " apart");
   }
-  return Band{static_cast<Eigen::Index>(first), std::min(static_cast<Eigen::Index>(last), samples / 2)};
+  const auto line = [samples](double k) { return std::min(static_cast<Eigen::Index>(k), samples / 2); };
+  return Band{line(first), line(last)};
 }
 
 }  // namespace bodeflow::koopmans_levin

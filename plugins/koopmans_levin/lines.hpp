@@ -41,7 +41,8 @@ struct Lines {
 Expected<Lines> lines_of(const Eigen::Ref<const Eigen::VectorXd>& input, const Eigen::Ref<const Eigen::VectorXd>& output,
                          std::optional<Band> band = std::nullopt);
 
-/// The band of lines within [low, high] rad/sample. Errors: not 0 <= low <= high <= pi; no line between them.
+/// The band of lines from the one nearest to low to the one nearest to high [rad/sample]: an end that was rounded, as 0.625 for
+/// line 199 of 2000 samples, still means its line. Errors: not 0 <= low <= high <= pi; both ends between the same two lines.
 Expected<Band> band_of(double low_rad, double high_rad, Eigen::Index samples);
 
 /// Nothing, or the error that names the first sample that is not finite, or lengths that do not fit.

@@ -11,20 +11,34 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// ds/da_i at a pole, i = 1 .. n.
-Eigen::VectorXcd sensitivity(const Eigen::VectorXd& a, Complex z, double sample_time) {
-  const Eigen::Index n = a.size() - 1;
-  Complex slope = 0.0, power = 1.0;  // dA/dz of z^n + a_1 z^(n-1) + ..
-  Eigen::VectorXcd change(n);
-  for (Eigen::Index i = n; i >= 1; --i) {
-    change[i - 1] = power;  // z^(n-i)
-    slope += static_cast<double>(n - i + 1) * a[i - 1] * power;
-    power *= z;
-  }
-  return -change / (slope * z * sample_time);
+// Covariance of real and imaginary part of factor * z, from that of z.
+Eigen::Matrix2d scaled(const Eigen::Matrix2d& covariance, Complex factor) {
+  Eigen::Matrix2d slope;
+  slope << factor.real(), -factor.imag(), factor.imag(), factor.real();
+  return slope * covariance * slope.transpose();
 }
 
 }  // namespace
+
+std::vector<Eigen::Matrix2d> root_covariance(const Eigen::VectorXd& polynomial, const Eigen::MatrixXd& covariance,
+                                             const Eigen::VectorXcd& roots) {
+  const Eigen::Index size = polynomial.size();
+  std::vector<Eigen::Matrix2d> all;
+  for (const Complex z : roots) {
+    Complex slope = 0.0, power = 1.0;  // dP/dz
+    Eigen::VectorXcd powers(size);
+    for (Eigen::Index i = size - 1; i >= 0; --i) {
+      powers[i] = power;
+      if (i > 0) slope += static_cast<double>(size - i) * polynomial[i - 1] * power;
+      power *= z;
+    }
+    Eigen::MatrixXd change(2, size);
+    change.row(0) = (-powers / slope).real().transpose();
+    change.row(1) = (-powers / slope).imag().transpose();
+    all.emplace_back(change * covariance * change.transpose());
+  }
+  return all;
+}
 
 Expected<std::vector<Pole>> poles(const Model& model, const Eigen::MatrixXd& covariance, double sample_time) {
   const Eigen::Index n = model.order();
@@ -34,17 +48,23 @@ Expected<std::vector<Pole>> poles(const Model& model, const Eigen::MatrixXd& cov
   }
   const auto roots = numerics::roots(model.a);
   if (!roots) return tl::make_unexpected(roots.error());
+  Eigen::MatrixXd of_a = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  of_a.bottomRightCorner(n, n) = covariance.topLeftCorner(n, n);
+  const auto spread = root_covariance(model.a, of_a, *roots);
   std::vector<Pole> found;
-  for (const Complex z : *roots) {
+  for (std::size_t i = 0; i < spread.size(); ++i) {
     Pole p;
-    p.z = z;
-    p.s_rad_s = std::log(z) / sample_time;
-    p.frequency_hz = std::abs(p.s_rad_s) / (2.0 * std::numbers::pi);
-    p.damping_ratio = -p.s_rad_s.real() / std::abs(p.s_rad_s);
-    const Eigen::VectorXcd g = sensitivity(model.a, z, sample_time);
-    const Eigen::VectorXd re = g.real(), im = g.imag();
-    p.real_std_rad_s = std::sqrt(re.dot(covariance.topLeftCorner(n, n) * re));
-    p.imaginary_std_rad_s = std::sqrt(im.dot(covariance.topLeftCorner(n, n) * im));
+    p.z = (*roots)[static_cast<Eigen::Index>(i)];
+    p.z_covariance = spread[i];
+    p.s_rad_s = std::log(p.z) / sample_time;
+    const double size = std::abs(p.s_rad_s);
+    p.frequency_hz = size / (2.0 * std::numbers::pi);
+    p.damping_ratio = -p.s_rad_s.real() / size;
+    const Eigen::Matrix2d of_s = scaled(spread[i], 1.0 / (p.z * sample_time));
+    p.real_std_rad_s = std::sqrt(of_s(0, 0));
+    p.imaginary_std_rad_s = std::sqrt(of_s(1, 1));
+    const Eigen::Vector2d outward(p.s_rad_s.real() / size, p.s_rad_s.imag() / size);
+    p.frequency_std_hz = std::sqrt(outward.dot(of_s * outward)) / (2.0 * std::numbers::pi);
     found.push_back(p);
   }
   return found;

@@ -8,13 +8,21 @@
 
 namespace bodeflow::koopmans_levin {
 
+/// The covariance of real and imaginary part of each root z of c_0 z^n + .. + c_n, by first-order propagation:
+/// dz/dc_i = -z^(n-i) / P'(z). It grows without bound where roots fall together. covariance: of c_0 .. c_n, zeros for those that
+/// are fixed.
+std::vector<Eigen::Matrix2d> root_covariance(const Eigen::VectorXd& polynomial, const Eigen::MatrixXd& covariance,
+                                             const Eigen::VectorXcd& roots);
+
 /// A pole of a discrete-time model, and the pole of the continuous-time system that it samples.
 struct Pole {
   std::complex<double> z;
   std::complex<double> s_rad_s;  ///< ln(z) / sample_time, the imaginary part within +- pi / sample_time
+  Eigen::Matrix2d z_covariance;  ///< of Re z and Im z
   double frequency_hz = 0.0;     ///< |s| / 2 pi
-  double damping_ratio = 0.0;    ///< -Re s / |s|; below 0 where unstable
-  double real_std_rad_s = 0.0;   ///< standard deviations of Re s and Im s
+  double frequency_std_hz = 0.0;
+  double damping_ratio = 0.0;   ///< -Re s / |s|; below 0 where unstable
+  double real_std_rad_s = 0.0;  ///< standard deviations of Re s and Im s
   double imaginary_std_rad_s = 0.0;
 };
 

@@ -17,16 +17,10 @@ std::string warning(const std::string& name, double factor, double in_std) {
 
 }  // namespace
 
-Expected<RatioSensitivity> ratio_sensitivity(const Factors& factors, const Solution& solution, const Eigen::MatrixXd& covariance,
-                                             double factor) {
-  if (!(factor > 1.0)) return refused("the factor of the noise ratio must be above 1");
-  const auto below = solve(factors, solution.ratio / factor, solution.noise_matrix);
-  if (!below) return tl::make_unexpected(below.error());
-  const auto above = solve(factors, solution.ratio * factor, solution.noise_matrix);
-  if (!above) return tl::make_unexpected(above.error());
-  const Eigen::VectorXd centre = parameters(solution);
-  const Eigen::VectorXd down = parameters(*below) - centre, up = parameters(*above) - centre;
-  const auto names = parameter_names(solution.order());
+RatioSensitivity ratio_sensitivity(const Eigen::VectorXd& centre, const Eigen::VectorXd& below, const Eigen::VectorXd& above,
+                                   const Eigen::MatrixXd& covariance, double factor) {
+  const Eigen::VectorXd down = below - centre, up = above - centre;
+  const auto names = parameter_names((centre.size() - 1) / 2);
   RatioSensitivity s;
   s.factor = factor;
   s.shift.resize(centre.size());
@@ -37,6 +31,16 @@ Expected<RatioSensitivity> ratio_sensitivity(const Factors& factors, const Solut
     if (s.shift_in_std[i] > 1.0) s.warnings.push_back(warning(names[static_cast<std::size_t>(i)], factor, s.shift_in_std[i]));
   }
   return s;
+}
+
+Expected<RatioSensitivity> ratio_sensitivity(const Factors& factors, const Solution& solution, const Eigen::MatrixXd& covariance,
+                                             double factor) {
+  if (!(factor > 1.0)) return refused("the factor of the noise ratio must be above 1");
+  const auto below = solve(factors, solution.ratio / factor, solution.noise_matrix);
+  if (!below) return tl::make_unexpected(below.error());
+  const auto above = solve(factors, solution.ratio * factor, solution.noise_matrix);
+  if (!above) return tl::make_unexpected(above.error());
+  return ratio_sensitivity(parameters(solution), parameters(*below), parameters(*above), covariance, factor);
 }
 
 }  // namespace bodeflow::koopmans_levin

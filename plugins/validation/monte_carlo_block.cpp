@@ -64,7 +64,7 @@ void MonteCarlo::describe(Describe& d) {
   d.optional<double>("frequency.first").unit("Hz").above(0.0).doc("first frequency of `response`, for runs that are models");
   d.optional<double>("frequency.last").unit("Hz").above(0.0).doc("last one; default: half the sample rate of the models");
   d.parameter("frequency.count", std::int64_t{200}).range(2, 1e6).doc("how many frequencies");
-  d.parameter("frequency.spacing", "linear").choices({"linear", "logarithmic"});
+  d.parameter("frequency.spacing", "linear").choices({"linear", "logarithmic"}).doc("of the frequencies");
 }
 
 void MonteCarlo::configure(const Parameters& p) {

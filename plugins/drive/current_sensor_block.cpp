@@ -1,6 +1,7 @@
 #include "current_sensor_block.hpp"
 
 #include "bench_properties.hpp"
+#include "records/signals.hpp"
 #include "sensor_stream.hpp"
 
 namespace bodeflow::drive {
@@ -37,7 +38,7 @@ void CurrentSensor::describe(Describe& d) {
   d.stream_out(out).same_as(in).doc("measured currents [A]");
   d.message_in(properties)
       .optional()
-      .record_type(kBenchProperties)
+      .record_type("bench_properties")
       .doc("hidden current_gain, current_offset, current_lag, current_delay, current_noise, current_hum, current_hum_frequency");
 }
 
@@ -61,8 +62,10 @@ void CurrentSensor::resolve(Facts& f) {
 
 void CurrentSensor::advise(const Facts& f, Advice& a) {
   const std::vector<double> lines = f.in(in).note("excitation.frequencies");
-  if (lines.empty() || (declared_.lag_s == 0 && declared_.delay_s == 0) || lines.back() <= 0.1 * rate_hz_) return;
-  a.warn("lag and delay are right up to a tenth of the sampling rate and the excitation goes beyond it; excite lower lines");
+  const double highest_hz = 0.1 * f.in(in).rate.hz();
+  if (lines.empty() || (declared_.lag_s == 0 && declared_.delay_s == 0) || lines.back() <= highest_hz) return;
+  a.warn("lag and delay are right up to a tenth of the sampling rate, " + records::short_number(highest_hz) +
+         " Hz, and the excitation goes up to " + records::short_number(lines.back()) + " Hz; excite lower lines");
 }
 
 void CurrentSensor::activate(const Activation& a) {
@@ -71,14 +74,14 @@ void CurrentSensor::activate(const Activation& a) {
 }
 
 void CurrentSensor::receive(int, const RecordView& record, Io& io) {
-  check_properties(record, io.position());
-  take_property(record, "current_gain", {-1e6, 1e6}, actual_.errors.gain);
-  take_property(record, "current_offset", {-1e6, 1e6}, actual_.errors.offset);
-  take_property(record, "current_lag", {0, kLongest_s}, actual_.lag_s);
-  take_property(record, "current_delay", {0, kLongest_s}, actual_.delay_s);
-  take_property(record, "current_noise", {0, 1e6}, actual_.errors.noise_std);
-  take_property(record, "current_hum", {0, 1e6}, actual_.errors.hum_amplitude);
-  take_property(record, "current_hum_frequency", {0, kHighestHum_hz}, actual_.errors.hum_frequency_hz);
+  check_at_start(io.position());
+  take_property(record, "current_gain", -1e6, 1e6, actual_.errors.gain);
+  take_property(record, "current_offset", -1e6, 1e6, actual_.errors.offset);
+  take_property(record, "current_lag", 0, kLongest_s, actual_.lag_s);
+  take_property(record, "current_delay", 0, kLongest_s, actual_.delay_s);
+  take_property(record, "current_noise", 0, 1e6, actual_.errors.noise_std);
+  take_property(record, "current_hum", 0, 1e6, actual_.errors.hum_amplitude);
+  take_property(record, "current_hum_frequency", 0, kHighestHum_hz, actual_.errors.hum_frequency_hz);
   set_dynamics();
 }
 

@@ -30,7 +30,7 @@ void Encoder::describe(Describe& d) {
   d.stream_in(in).doc("angle [rad], mechanical, not wrapped; one channel");
   d.stream_out(counts).same_as(in).doc("position in counts");
   d.stream_out(speed).same_as(in).doc("speed [rad/s], mechanical");
-  d.message_in(properties).optional().record_type(kBenchProperties).doc("hidden encoder_index_offset");
+  d.message_in(properties).optional().record_type("bench_properties").doc("hidden encoder_index_offset");
 }
 
 void Encoder::configure(const Parameters& p) {
@@ -54,8 +54,8 @@ void Encoder::resolve(Facts& f) {
 }
 
 void Encoder::receive(int, const RecordView& record, Io& io) {
-  check_properties(record, io.position());
-  take_property(record, "encoder_index_offset", {-1e3, 1e3}, index_rad_);
+  check_at_start(io.position());
+  take_property(record, "encoder_index_offset", -1e3, 1e3, index_rad_);
 }
 
 void Encoder::process(Io& io) {

@@ -19,6 +19,10 @@ void check_finite(std::span<const double> x, int channel, std::uint64_t first) {
   }
 }
 
+void check_at_start(std::uint64_t position) {
+  if (position > 0) fail("properties: a record before sample " + std::to_string(position) + ", allowed: before the first");
+}
+
 void add_noise_note(StreamFacts& output, const SensorErrors& errors, bool filtered) {
   const bool noisy_input = output.notes.count("noise.std") != 0;
   if (filtered && noisy_input) {

@@ -25,7 +25,7 @@ void VoltageSensor::describe(Describe& d) {
   d.stream_out(out).same_as(in).doc("measured voltages [V]");
   d.message_in(properties)
       .optional()
-      .record_type(kBenchProperties)
+      .record_type("bench_properties")
       .doc("hidden voltage_ratio_error, voltage_offset, voltage_noise");
 }
 
@@ -52,12 +52,12 @@ void VoltageSensor::activate(const Activation& a) {
 }
 
 void VoltageSensor::receive(int, const RecordView& record, Io& io) {
-  check_properties(record, io.position());
+  check_at_start(io.position());
   double ratio_error = actual_.gain - 1;
-  take_property(record, "voltage_ratio_error", {-1, 1e3}, ratio_error);
+  take_property(record, "voltage_ratio_error", -1, 1e3, ratio_error);
   actual_.gain = 1 + ratio_error;
-  take_property(record, "voltage_offset", {-1e6, 1e6}, actual_.offset);
-  take_property(record, "voltage_noise", {0, 1e6}, actual_.noise_std);
+  take_property(record, "voltage_offset", -1e6, 1e6, actual_.offset);
+  take_property(record, "voltage_noise", 0, 1e6, actual_.noise_std);
 }
 
 void VoltageSensor::process(Io& io) {

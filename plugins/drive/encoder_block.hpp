@@ -15,6 +15,7 @@ class Encoder final : public Block {
   static void describe(Describe& d);
   void configure(const Parameters& p) override;
   void resolve(Facts& f) override;
+  void activate(const Activation&) override { reset(); }
   void receive(int port, const RecordView& record, Io& io) override;
   void process(Io& io) override;
   void reset() override;

@@ -13,6 +13,7 @@ namespace bodeflow::koopmans_levin {
 namespace {
 
 constexpr std::int64_t kHighestOrder = 64;
+constexpr std::int64_t kMostLags = 10'000;
 
 std::optional<double> number_or_auto(const std::string& name, const std::string& text) {
   if (text == "auto") return {};
@@ -80,8 +81,9 @@ void ModelBlock::describe(Describe& d) {
   d.parameter("noise_band", "")
       .doc("band where the response is nearly zero: the output there is taken for noise, for ratio: auto");
   d.optional<double>("fallback_ratio").unit("1").above(0).doc("ratio of the model where the data determine none");
-  d.optional<std::int64_t>("lags").range(1, 10000).doc(
-      "of covariance matching; default: the order, on a band 1.5 periods of its width, at least 16");
+  d.optional<std::int64_t>("lags")
+      .range(1, kMostLags)
+      .doc("of covariance matching; default: the order, on a band 1.5 periods of its width, at least 16");
   d.parameter("band", "")
       .doc("frequencies that are fitted, as 0:0.625 [rad/sample] or 1 Hz:50 Hz; ends are taken to the nearest line");
   d.parameter("transient", true).doc("model the ends of the record; false is right for whole periods in steady state");
@@ -106,6 +108,8 @@ void ModelBlock::configure(const Parameters& p) {
   s.output_noise_std = p.number("output_noise_std");
   if (p.has("fallback_ratio")) s.fallback_ratio = p.number("fallback_ratio");
   if (p.has("lags")) s.lags = p.integer("lags");
+  if (s.lags && (*s.lags < 1 || *s.lags > kMostLags))
+    fail("lags " + std::to_string(*s.lags) + "; allowed: 1 to " + std::to_string(kMostLags));
   s.transient = p.boolean("transient");
   s.refine = p.text("refine") == "maximum_likelihood";
   s.noise_matrix = p.text("noise_matrix") == "identity" ? NoiseMatrix::identity : NoiseMatrix::exact;
@@ -144,6 +148,8 @@ void ModelBlock::resolve(Facts& f) {
   const auto period = u.note("excitation.period");
   period_ = period.empty() ? 0.0 : period[0] * rate_hz_;
 }
+
+void ModelBlock::activate(const Activation&) { reset(); }
 
 void ModelBlock::collect(std::span<const double> samples, const char* name, std::vector<double>& into) const {
   for (std::size_t n = 0; n < samples.size(); ++n) {

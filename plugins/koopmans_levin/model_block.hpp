@@ -21,6 +21,7 @@ class ModelBlock final : public Block {
   static void describe(Describe& d);
   void configure(const Parameters& p) override;
   void resolve(Facts& f) override;
+  void activate(const Activation& a) override;
   void process(Io& io) override;
   void finish(Io& io) override;
   void reset() override;

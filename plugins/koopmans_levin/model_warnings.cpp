@@ -1,5 +1,6 @@
 #include "model_warnings.hpp"
 
+#include <algorithm>
 #include <bodeflow/numerics/polynomial.hpp>
 #include <cmath>
 #include <complex>
@@ -23,6 +24,8 @@ constexpr double kOffset = 16.0;       // |error|^2 over its variance: four stan
 double hertz(double omega, double sample_rate_hz) { return omega * sample_rate_hz / (2.0 * std::numbers::pi); }
 
 std::string shortened(double value) { return short_number(value, 3); }
+
+std::string probability_text(double p) { return p < 1e-12 ? "below 1e-12" : shortened(p); }
 
 void warn_of_ratio(const Identification& found, Texts& warnings) {
   if (found.ratio_source == RatioSource::fallback) {
@@ -55,8 +58,8 @@ void warn_of_errors(const Identification& found, double sample_rate_hz, Texts& w
   const double half = 0.5 * (w.band_omega[1] - w.band_omega[0]);
   const double from = hertz(std::max(0.0, w.band_omega[worst] - half), sample_rate_hz),
                to = hertz(w.band_omega[worst] + half, sample_rate_hz);
-  warnings.push_back("the equation errors are not white (probability " + shortened(w.probability) + "): from " + shortened(from) +
-                     " to " + shortened(to) + " Hz they have " + shortened(w.band_mean[worst]) +
+  warnings.push_back("the equation errors are not white (probability " + probability_text(w.probability) + "): from " +
+                     shortened(from) + " to " + shortened(to) + " Hz they have " + shortened(w.band_mean[worst]) +
                      " times the power that white noises give them; the noise is coloured, the order too low or the ratio wrong: "
                      "raise the order, or choose the band where the noise is white");
 }
@@ -64,7 +67,9 @@ void warn_of_errors(const Identification& found, double sample_rate_hz, Texts& w
 void warn_of_offset(const Identification& found, double sample_rate_hz, Texts& warnings) {
   if (found.noise_free || found.lines.k[0] != 0) return;
   const double share = std::norm(equation_errors(found.lines, found.model)[0]) / equation_variances(found.lines, found.model)[0];
-  if (!(share > kOffset)) return;
+  // Noise that is stronger towards low frequencies is no offset.
+  const double beside = found.whiteness ? std::max(1.0, found.whiteness->band_mean[0]) : 1.0;
+  if (!(share > kOffset * beside)) return;
   warnings.push_back("the mean values lie " + shortened(std::sqrt(share)) +
                      " standard deviations off the model: an offset of a sensor; leave line 0 out with a band from " +
                      shortened(sample_rate_hz / static_cast<double>(found.lines.samples)) + " Hz on");

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit.hpp"
+#include "uncertainty.hpp"
+
+namespace bodeflow::maximum_likelihood {
+
+/// A cost beside what it is expected to be where the model is right and the variances are.
+struct CostTest {
+  double cost = 0.0;
+  double expected = 0.0;              ///< (F - n/2) nu/(nu - 1); infinite for nu <= 1
+  std::optional<double> deviation;    ///< standard deviation of that; not for nu <= 2
+  std::optional<double> probability;  ///< of a greater cost
+  double degrees_of_freedom = 0.0;    ///< 2F - n, of 2 cost with nu infinite
+};
+
+/// The test of a fit with n parameters at F complex equations, with variances of nu degrees of freedom: |residual|^2 is F(2, 2
+/// nu) distributed, so with P periods the expected cost is (P - 1)/(P - 2) (F - n/2), and its variance (P - 1)^3/((P - 2)^2 (P -
+/// 3)) (F - n/2). The probability takes the cost as gamma distributed with these moments. Reference: R. Pintelon, J. Schoukens,
+/// System Identification: A Frequency Domain Approach, 2nd ed. 2012, sections 9.12 and 10.3.
+CostTest cost_test(const Spectra& spectra, const Fit& fit);
+
+/// AIC and MDL, the latter with ln(2F) for each parameter in place of 2: 2 cost + penalty, the cost less the part (nu/(nu - 2))
+/// that variances of nu degrees of freedom add to what a parameter wins. Without known variance 2F ln(cost/F) + penalty.
+struct Criteria {
+  double aic = 0.0, mdl = 0.0;
+};
+Criteria criteria(const Spectra& spectra, const Fit& fit);
+
+/// Whether the normalised residuals of one output are independent from line to line.
+struct Whiteness {
+  Eigen::Index lags = 0;
+  double statistic = 0.0;  ///< 2K sum_l |r_l|^2 over lags 1 .. L, r_l the correlation of residuals l lines apart; chi-squared, 2L
+  double probability = 1.0;  ///< of a greater one
+};
+/// Nothing for fewer than 8 lines, or for residuals of 0. What a fit takes away shows at few lines: the test is then on the safe
+/// side.
+std::optional<Whiteness> whiteness(const Eigen::VectorXcd& residuals);
+
+/// A pole and a zero that may be the same: their distance is within its uncertainty (95 %).
+struct Cancellation {
+  std::complex<double> pole, zero;  ///< rad/s or z; of a pair the upper one
+  std::size_t output = 0;
+};
+std::vector<Cancellation> cancellations(const Fit& fit, const Eigen::MatrixXd& covariance_root);
+
+/// A pole outside the stable region, and by how many of its standard deviations (infinite without covariance).
+struct UnstablePole {
+  std::complex<double> pole;
+  double deviations = 0.0;
+};
+std::vector<UnstablePole> unstable_poles(const Fit& fit, const Eigen::MatrixXd& covariance_root);
+
+}  // namespace bodeflow::maximum_likelihood

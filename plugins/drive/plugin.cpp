@@ -1,7 +1,16 @@
 #include <bodeflow/block.hpp>
 
+#include "classical_tests_block.hpp"
+#include "current_sensor_block.hpp"
+#include "encoder_block.hpp"
+#include "hidden_effect_block.hpp"
+#include "induction_motor_block.hpp"
 #include "inverter_block.hpp"
+#include "power_meter_block.hpp"
+#include "supply_block.hpp"
+#include "voltage_sensor_block.hpp"
 
 using namespace bodeflow::drive;
 
-BODEFLOW_PLUGIN("drive", "0.1.0", Inverter)
+BODEFLOW_PLUGIN("drive", "0.1.0", CurrentSensor, VoltageSensor, Encoder, HiddenEffectBlock, Supply, PowerMeter, ClassicalTests,
+                Inverter, InductionMotor)

@@ -31,7 +31,7 @@ fs::path shared_data() {
 
 std::vector<fs::path> graphs() {
   std::vector<fs::path> found;
-  for (const char* folder : {"first_steps", "measuring"})
+  for (const char* folder : {"first_steps", "measuring", "drive"})
     for (const auto& entry : fs::directory_iterator(fs::path(BODEFLOW_SOURCE_DIR) / "graphs" / folder))
       if (entry.path().extension() == ".yaml") found.push_back(entry.path());
   std::sort(found.begin(), found.end());
@@ -41,7 +41,7 @@ std::vector<fs::path> graphs() {
 }  // namespace
 
 TEST_CASE(
-    "every graph of first_steps and measuring runs as it stands, to the same bits for any chunk and thread count, with a "
+    "every graph of first_steps, measuring and drive runs as it stands, to the same bits for any chunk and thread count, with a "
     "report") {
   for (const fs::path& graph : graphs()) {
     std::vector<std::string> command{"run", graph.string()};

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <bodeflow/block.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reveal.hpp"
+
+namespace bodeflow::residual {
+
+/// residual.reveal: holds a trace against the truth.
+class Reveal final : public Block {
+ public:
+  static constexpr MessageIn trace{0, "trace"};
+  static constexpr MessageIn truth{1, "truth"};
+  static constexpr MessageOut out{0, "out"};
+
+  static void describe(Describe& d);
+  void receive(int port, const RecordView& record, Io& io) override;
+  void finish(Io& io) override;
+  void reset() override;
+
+ private:
+  struct Said {
+    Answer answer;
+    std::vector<std::string> parameter_names, parameter_units;
+    std::vector<double> before, after, after_std;
+  };
+  struct Truth {
+    std::string effect, unit;
+    double size = 0.0;
+    std::optional<Eigen::Vector4d> motor;
+  };
+  std::optional<Said> said_;
+  std::optional<Truth> truth_;
+};
+
+}  // namespace bodeflow::residual

@@ -11,6 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kLongestCycle = 1e9;  // samples
 
 }  // namespace
 
@@ -55,10 +56,10 @@ void PowerMeter::resolve(Facts& f) {
   }
   channels_ = u.channels;
   rate_hz_ = u.rate.hz();
-  const double samples = frequency_hz_ == 0 ? 1.0 : rate_hz_ / frequency_hz_;
-  if (samples < (frequency_hz_ == 0 ? 1.0 : 4.0) || std::abs(samples - std::round(samples)) > 1e-9 * samples) {
+  const double least = frequency_hz_ == 0 ? 1.0 : 4.0, samples = frequency_hz_ == 0 ? 1.0 : rate_hz_ / frequency_hz_;
+  if (!(samples >= least && samples <= kLongestCycle) || std::abs(samples - std::round(samples)) > 1e-9 * samples) {
     fail("a cycle of " + records::short_number(frequency_hz_) + " Hz has " + records::short_number(samples) +
-         " samples, allowed: a whole number from 4 on");
+         " samples, allowed: a whole number from 4 to 1e9");
   }
   cycle_ = static_cast<std::uint64_t>(std::round(samples));
   skip_ = static_cast<std::uint64_t>(std::ceil(skip_s_ * rate_hz_ - 1e-6));

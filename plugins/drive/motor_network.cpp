@@ -13,7 +13,7 @@ namespace {
 using numerics::refused;
 using records::short_number;
 
-constexpr Eigen::Index kEddyLoops = 4;  // R z coth z within 1e-5 up to |z| = 4: a bar of 30 mm up to 220 Hz
+constexpr Eigen::Index kEddyLoops = 4;  // R z coth z within 1e-5 up to |z| = 4: a bar of 30 mm up to 83 Hz
 constexpr double kVacuumPermeability = 4e-7 * 3.14159265358979323846;
 
 /// The eddy loops behind the rotor loop: loop k shares the inductor R tau / (4 k - 1) with the one before.

@@ -13,8 +13,8 @@ namespace bodeflow::maximum_likelihood {
 
 namespace {
 
-constexpr double kRough = 1e-8;  // tolerance of a first search, which only ranks the starts
-constexpr int kRoughEvaluations = 100;
+constexpr double kRough = 1e-7;  // tolerance of a first search, which only ranks the starts
+constexpr int kRoughEvaluations = 60;
 constexpr double kFine = 1e-13;
 constexpr int kFineEvaluations = 500;
 constexpr double kSameCost = 1e-6;   // relative: another way to the same minimum

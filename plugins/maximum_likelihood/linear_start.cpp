@@ -1,9 +1,7 @@
 #include "linear_start.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -16,6 +14,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
+constexpr double kRounding = 1e-15;  // of the triangular factor's diagonal
+constexpr int kInverseIterations = 10;
 constexpr int kWithoutGain = 6;  // iterations that may pass without a lower cost
 
 // sqrt(weight) / deviation [A Y - D B U] as a matrix on theta, real and imaginary parts, outputs one after the other.
@@ -56,11 +56,25 @@ Eigen::MatrixXd noise_matrix(const Lines& lines, const Bases& bases, const Eigen
   return sum;
 }
 
+// The direction of least |M x|: inverse iteration on the triangular factor, which for a start need not converge to the last
+// digit.
 Eigen::VectorXd smallest_direction(const Eigen::MatrixXd& m) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(m);
-  const Eigen::MatrixXd r = qr.matrixQR().topRows(std::min(m.rows(), m.cols())).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullV);
-  return svd.matrixV().col(m.cols() - 1);
+  const Eigen::Index size = m.cols();
+  Eigen::MatrixXd r = Eigen::MatrixXd::Zero(size, size);
+  r.topRows(std::min(m.rows(), size)) = qr.matrixQR().topRows(std::min(m.rows(), size)).triangularView<Eigen::Upper>();
+  const double least = kRounding * r.diagonal().cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < size; ++i) {
+    if (std::abs(r(i, i)) < least) r(i, i) = least;
+  }
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(size);
+  for (int n = 0; n < kInverseIterations; ++n) {
+    r.transpose().triangularView<Eigen::Lower>().solveInPlace(x);
+    x.normalize();
+    r.triangularView<Eigen::Upper>().solveInPlace(x);
+    x.normalize();
+  }
+  return x;
 }
 
 // The direction of least |M x|^2 / x^T C x; empty where M has lost a direction to rounding.

@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kQuick = 8;      // iterations a delay of the grid
+constexpr int kQuick = 5;      // iterations a delay of the grid
 constexpr int kThorough = 30;  // iterations a start
 constexpr std::size_t kDelays = 3;
 constexpr double kAlike = 1e-6;  // relative difference of cost

@@ -10,7 +10,7 @@ namespace bodeflow::frisch {
 /// A motor model fitted to data.
 struct MotorFit {
   MotorModel model;
-  Eigen::Matrix4d covariance;  ///< of gamma, alpha, Lm_beta, sigma
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of gamma, alpha, Lm_beta, sigma
   /// Expected error of each estimate beyond the scatter, in the parameter's unit: the second-order term that the curvature of the
   /// model adds. It is reported and not taken off.
   Eigen::Vector4d bias = Eigen::Vector4d::Zero();

@@ -1,5 +1,7 @@
 #include "motor_model.hpp"
 
+#include <cmath>
+
 namespace bodeflow::frisch {
 
 using Complex = std::complex<double>;
@@ -16,6 +18,18 @@ std::complex<double> response(const MotorModel& m, double omega) {
 
 Eigen::VectorXcd response(const MotorModel& model, const Eigen::VectorXd& omega) {
   return omega.unaryExpr([&](double w) { return response(model, w); });
+}
+
+Eigen::Vector2d transfer_numerator(const MotorModel& m) { return Eigen::Vector2d(1.0, m.alpha) / m.sigma; }
+
+Eigen::Vector3d transfer_denominator(const MotorModel& m) {
+  return {1.0, m.gamma + m.alpha, m.alpha * (m.gamma - m.alpha * m.lm_beta)};
+}
+
+Eigen::Vector2d poles(const MotorModel& model) {
+  const Eigen::Vector3d d = transfer_denominator(model);
+  const double fast = -0.5 * (d[1] + std::sqrt(d[1] * d[1] - 4.0 * d[2]));
+  return {d[2] / fast, fast};
 }
 
 ResponseSlope response_slope(const MotorModel& m, double omega) {

@@ -31,6 +31,13 @@ const std::vector<std::string>& motor_parameter_names();
 std::complex<double> response(const MotorModel& model, double omega);
 Eigen::VectorXcd response(const MotorModel& model, const Eigen::VectorXd& omega);
 
+/// Numerator and denominator of G(s), descending powers, denominator monic.
+Eigen::Vector2d transfer_numerator(const MotorModel& model);
+Eigen::Vector3d transfer_denominator(const MotorModel& model);
+
+/// The poles [rad/s], the slow one first: real and apart, as all parameters are positive.
+Eigen::Vector2d poles(const MotorModel& model);
+
 /// G(j omega) and its derivatives by the logarithms of the parameters.
 struct ResponseSlope {
   std::complex<double> value;

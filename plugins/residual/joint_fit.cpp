@@ -10,7 +10,7 @@ namespace {
 
 // Of the differences that stand for derivatives; the simulation is good to about 1e-9 of its values.
 constexpr double kStep = 1e-5;
-constexpr numerics::LeastSquaresLimits kLimits{60, 1e-6};
+constexpr numerics::LeastSquaresLimits kLimits{40, 1e-6};
 // Directions of the parameters whose information is below this part of the greatest count as not determined.
 constexpr double kLeastInformation = 1e-12;
 

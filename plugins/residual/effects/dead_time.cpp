@@ -12,7 +12,7 @@ std::vector<Parameter> DeadTime::parameters() const {
 
 std::vector<Eigen::VectorXd> DeadTime::starts(const Scales& scales) const {
   std::vector<Eigen::VectorXd> starts;
-  for (const double share : {0.05, 0.4}) starts.push_back(Eigen::Vector2d(share * scales.effort, 0.02 * scales.flow));
+  for (const double share : {0.1, 0.4}) starts.push_back(Eigen::Vector2d(share * scales.effort, 0.02 * scales.flow));
   return starts;
 }
 

@@ -8,7 +8,7 @@ namespace bodeflow::maximum_likelihood {
 
 namespace {
 
-constexpr double kDependent = 1e-10;  // smallest over largest singular value of fixed coefficients that contradict each other
+constexpr double kDependent = 1e-10;  // smallest over largest singular value of conditions that are the same
 
 }  // namespace
 
@@ -44,8 +44,12 @@ Expected<Eigen::MatrixXd> free_directions(const Bases& bases, const Structure& s
   if (count + 2 > bases.size()) return refused("all coefficients are fixed");
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(conditions, Eigen::ComputeFullV);
   if (svd.singularValues()[count - 1] < kDependent * svd.singularValues()[0])
-    return refused("the fixed coefficients contradict or repeat each other");
-  return Eigen::MatrixXd(svd.matrixV().rightCols(bases.size() - count));
+    return refused("the fixed coefficients repeat each other");
+  const Eigen::MatrixXd free = svd.matrixV().rightCols(bases.size() - count);
+  const Eigen::VectorXd highest = whole.row(structure.order);
+  if ((highest.transpose() * free.topRows(whole.cols())).norm() < kDependent * highest.norm())
+    return refused("the fixed coefficients contradict each other: they leave the denominator without its highest coefficient");
+  return free;
 }
 
 }  // namespace bodeflow::maximum_likelihood

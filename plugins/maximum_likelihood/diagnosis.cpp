@@ -14,6 +14,7 @@ using Complex = std::complex<double>;
 
 constexpr double kPairLimit = 5.991;  // 95 % of chi-squared with 2 degrees
 constexpr double kRealLimit = 3.841;  // with 1
+constexpr double kNear = 0.3;         // relative distance above which a root of large uncertainty is far away, not near another
 constexpr Eigen::Index kLeastLines = 8;
 constexpr Eigen::Index kMostLags = 10;
 
@@ -54,15 +55,15 @@ Criteria criteria(const Spectra& spectra, const Fit& fit) {
   return {fit_term + 2.0 * n, fit_term + n * std::log(2.0 * equations)};
 }
 
-std::optional<Whiteness> whiteness(const Eigen::VectorXcd& residuals) {
-  const Eigen::Index lines = residuals.size();
-  const double power = residuals.squaredNorm();
-  if (lines < kLeastLines || !(power > 0.0)) return std::nullopt;
+std::optional<Whiteness> whiteness(const Eigen::VectorXcd& errors) {
+  const Eigen::Index lines = errors.size();
+  if (lines < kLeastLines || !(errors.cwiseAbs().minCoeff() > 0.0)) return std::nullopt;
+  const Eigen::VectorXcd direction = errors.array() / errors.array().abs();
   Whiteness w;
   w.lags = std::min(kMostLags, lines / 4);
   for (Eigen::Index lag = 1; lag <= w.lags; ++lag) {
-    const Complex r = residuals.head(lines - lag).dot(residuals.tail(lines - lag)) / power;
-    w.statistic += 2.0 * static_cast<double>(lines) * std::norm(r);
+    const Complex sum = direction.head(lines - lag).dot(direction.tail(lines - lag));
+    w.statistic += 2.0 * std::norm(sum) / static_cast<double>(lines - lag);
   }
   w.probability = numerics::chi_squared_tail(w.statistic, 2.0 * static_cast<double>(w.lags));
   return w;
@@ -80,6 +81,7 @@ std::vector<Cancellation> cancellations(const Fit& fit, const Eigen::MatrixXd& r
       for (Eigen::Index z = 0; z < model.zeros.size(); ++z) {
         const Complex pole = model.poles[p], zero = model.zeros[z];
         if (pole.imag() < 0.0 || zero.imag() < 0.0 || is_real(pole) != is_real(zero)) continue;
+        if (std::abs(pole - zero) > kNear * std::max(std::abs(pole), std::abs(zero))) continue;
         if (may_vanish(pole - zero, poles.row(p) - zeros.row(z), root, is_real(pole))) found.push_back({pole, zero, i});
       }
     }

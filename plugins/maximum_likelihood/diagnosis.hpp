@@ -32,17 +32,19 @@ struct Criteria {
 };
 Criteria criteria(const Spectra& spectra, const Fit& fit);
 
-/// Whether the normalised residuals of one output are independent from line to line.
+/// Whether the residuals of one output are independent from line to line. Taken are their directions in the complex plane, r/|r|,
+/// so that neither a wrong variance nor a single large error decides: dynamics that the model lacks turn them slowly from line
+/// to line, noise does not.
 struct Whiteness {
   Eigen::Index lags = 0;
-  double statistic = 0.0;  ///< 2K sum_l |r_l|^2 over lags 1 .. L, r_l the correlation of residuals l lines apart; chi-squared, 2L
+  double statistic = 0.0;    ///< sum over lags l = 1 .. L of 2/(K - l) |sum_k conj(d_k) d_(k+l)|^2; chi-squared with 2L degrees
   double probability = 1.0;  ///< of a greater one
 };
-/// Nothing for fewer than 8 lines, or for residuals of 0. What a fit takes away shows at few lines: the test is then on the safe
-/// side.
-std::optional<Whiteness> whiteness(const Eigen::VectorXcd& residuals);
+/// Nothing for fewer than 8 lines, or where an error is 0. The few dimensions that a fit takes away make the test a little
+/// timid where lines are few.
+std::optional<Whiteness> whiteness(const Eigen::VectorXcd& errors);
 
-/// A pole and a zero that may be the same: their distance is within its uncertainty (95 %).
+/// A pole and a zero that may be the same: their distance is within its uncertainty (95 %), and below 0.3 of the larger of them.
 struct Cancellation {
   std::complex<double> pole, zero;  ///< rad/s or z; of a pair the upper one
   std::size_t output = 0;

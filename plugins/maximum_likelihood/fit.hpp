@@ -25,7 +25,7 @@ struct Fit {
   std::vector<Attempt> attempts;
   Eigen::Index reached = 0;  ///< how many attempts ended at the least cost, within 1e-6 of it
   bool delay_at_bound = false;
-  Eigen::MatrixXcd residuals;  ///< normalised, lines x outputs
+  Eigen::MatrixXcd residuals;  ///< normalised, lines x outputs, with the phase of U in them
   Eigen::MatrixXcd response;   ///< of the models at the lines, as it is measured: with delay and hold
 
   Eigen::Index parameters() const { return structure.parameters(); }

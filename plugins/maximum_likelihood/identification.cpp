@@ -79,7 +79,8 @@ Expected<Identification> identify(const Spectra& spectra, const Settings& settin
   } else {
     id.no_covariance = root ? "its numbers are not finite" : root.error().text;
   }
-  for (Eigen::Index i = 0; i < id.spectra.outputs(); ++i) id.whiteness.push_back(whiteness(id.fit.residuals.col(i)));
+  const Eigen::MatrixXcd error = id.spectra.response() - id.fit.response;
+  for (Eigen::Index i = 0; i < error.cols(); ++i) id.whiteness.push_back(whiteness(error.col(i)));
   return id;
 }
 

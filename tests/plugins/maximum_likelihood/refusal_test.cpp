@@ -83,5 +83,9 @@ TEST_CASE("maximum likelihood: what can't be fixed is refused by its name") {
   s.fixed = {{false, 0, 4, 1.0}};
   CHECK(refusal(example(), s) == "the fixed coefficient b4: the highest one is b1");
   s.fixed = {{true, 0, 1, 1.0}, {true, 0, 1, 2.0}};
-  CHECK(refusal(example(), s) == "the fixed coefficients contradict or repeat each other");
+  CHECK(refusal(example(), s) ==
+        "no start for a search: the fixed coefficients contradict each other: they leave the denominator without its highest "
+        "coefficient");
+  s.fixed = {{true, 0, 1, 1.0}, {true, 0, 1, 1.0}};
+  CHECK(refusal(example(), s) == "no start for a search: the fixed coefficients repeat each other");
 }

@@ -16,7 +16,7 @@ constexpr double kQuantile = 1.959964;
 struct Runs {
   Eigen::MatrixXd values;      // runs x parameters
   Eigen::MatrixXd deviations;  // as claimed
-  Eigen::VectorXd costs, probabilities;
+  Eigen::VectorXd costs, probabilities, whiteness;
   double expected_cost = 0.0;
   Eigen::MatrixXd pole_hits;  // 1 where the 95 % ellipse holds the true pole
 
@@ -40,12 +40,14 @@ Runs run(int count, const Settings& s, const Rational& truth, Data data) {
       r.deviations.resize(count, c.values.size());
       r.costs.resize(count);
       r.probabilities.resize(count);
+      r.whiteness.resize(count);
       r.pole_hits = Eigen::MatrixXd::Zero(count, 1);
     }
     r.values.row(n) = c.values;
     r.deviations.row(n) = c.covariance.diagonal().cwiseSqrt();
     r.costs[n] = id->test.cost;
     r.probabilities[n] = id->test.probability.value_or(-1.0);
+    r.whiteness[n] = id->whiteness[0]->probability;
     r.expected_cost = id->test.expected;
     const Rational& found = id->fit.models[0];
     Eigen::Index nearest = 0;
@@ -98,7 +100,9 @@ TEST_CASE("maximum likelihood: no bias, scatter and coverage as claimed, cost as
   CHECK(r.costs.mean() == Approx(57.5).margin(4.0 * std::sqrt(57.5 / 400.0)));
   const double scatter = std::sqrt((r.costs.array() - r.costs.mean()).square().mean());
   CHECK(scatter == Approx(std::sqrt(57.5)).epsilon(0.15));
-  CHECK((r.probabilities.array() < 0.05).cast<double>().mean() == Approx(0.05).margin(4.0 * std::sqrt(0.05 * 0.95 / 400.0)));
+  const double margin = 4.0 * std::sqrt(0.05 * 0.95 / 400.0);
+  CHECK((r.probabilities.array() < 0.05).cast<double>().mean() == Approx(0.05).margin(margin));
+  CHECK((r.whiteness.array() < 0.05).cast<double>().mean() == Approx(0.05).margin(margin));
 }
 
 TEST_CASE("maximum likelihood: variances from 6 periods raise expected cost and covariance as Pintelon and Schoukens tell") {

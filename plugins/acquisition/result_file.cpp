@@ -13,6 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
+constexpr const char* kUsual = "identify";  ///< what the command of that name calls its result
 
 Expected<std::string> text_of(const std::filesystem::path& file) {
   std::error_code error;
@@ -68,6 +69,7 @@ Expected<std::string> chosen(const std::string& file, const Json& results, const
   for (const auto& [key, record] : results.items())
     if (type.empty() || type_of(record) == type) keys.push_back(key);
   if (keys.size() == 1) return keys.front();
+  if (std::find(keys.begin(), keys.end(), kUsual) != keys.end()) return std::string(kUsual);
   const std::string wanted = type.empty() ? "record" : "record of type '" + type + "'";
   if (keys.empty()) return unexpected(file + ": no " + wanted + "; it has " + listed(results));
   return unexpected(file + ": more than one " + wanted + "; say which by its name: " + listed(results));

@@ -16,7 +16,7 @@ struct ResultRecord {
 };
 
 /// The record of that name in a result.json, or in that of a run directory. Without a name: the only one there is, of that type
-/// where a type is given.
+/// where a type is given, or of several the one called identify.
 ///
 /// Numbers are doubles where the file writes a fraction or an exponent, else integers; null is NaN; pairs are complex numbers.
 /// Errors begin with the file's name, and the place where it is no JSON, "file:line:column: what": a file that is not there or

@@ -1,7 +1,9 @@
 #include <bodeflow/block.hpp>
 
+#include "comparison_block.hpp"
 #include "monte_carlo_block.hpp"
+#include "true_model_block.hpp"
 
 using namespace bodeflow::validation;
 
-BODEFLOW_PLUGIN("validation", "0.1.0", MonteCarlo)
+BODEFLOW_PLUGIN("validation", "0.1.0", ComparisonBlock, MonteCarlo, TrueModel)

@@ -78,7 +78,9 @@ TEST_CASE("result block: a run that did not end is told") {
 }
 
 TEST_CASE("result block: the record that is meant must be clear") {
-  CHECK(refusal(kTwo) == "F: more than one record; say which by its name: identify (model), data (frequency_response)");
+  CHECK(refusal(R"({"bodeflow": 1, "results": {"a": {"type": "t"}, "b": {"type": "t"}, "c": {"type": "s"}}})", "", "t") ==
+        "F: more than one record of type 't'; say which by its name: a (t), b (t), c (s)");
+  CHECK(refusal(kTwo) == "no failure");  // identify
   CHECK(refusal(kTwo, "x") == "F: no result 'x'; it has identify (model), data (frequency_response)");
   CHECK(refusal(kTwo, "data", "model") == "F: result 'data' is of type 'frequency_response'; needed: model");
   CHECK(refusal(kTwo, "", "trace") == "F: no record of type 'trace'; it has identify (model), data (frequency_response)");

@@ -21,6 +21,8 @@ int main(int argc, char** argv) {
       ->type_name("DIR")
       ->allow_extra_args(false);
   add_run(app, session);
+  add_identify(app, session);
+  add_compare(app, session);
   add_check(app, session);
   add_plan(app, session);
   add_graph(app, session);

@@ -39,6 +39,8 @@ struct GraphOptions {
 
 // One function a command, each in the file of its name: adds itself to the application.
 void add_run(CLI::App& app, Session& session);
+void add_identify(CLI::App& app, Session& session);
+void add_compare(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_plan(CLI::App& app, Session& session);
 void add_graph(CLI::App& app, Session& session);

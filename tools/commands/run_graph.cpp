@@ -53,11 +53,16 @@ int exit_code_of(phases::RunResult::Status status) {
   }
 }
 
-void say_result(const phases::RunResult& result, const std::filesystem::path& directory) {
+void say_what_is_wrong(const Problems& problems, bool own_graph) {
+  if (!own_graph) return say_problems(problems);
+  for (const auto& problem : problems) say_error(problem.text);
+}
+
+void say_result(const phases::RunResult& result, const std::filesystem::path& directory, bool own_graph) {
   if (result.status == phases::RunResult::Status::complete) return;
   const std::string phase = result.phase.empty() ? "" : fmt::format("phase '{}': ", result.phase);
   if (result.status == phases::RunResult::Status::rejected)
-    say_problems(result.problems);
+    say_what_is_wrong(result.problems, own_graph);
   else if (result.status == phases::RunResult::Status::interrupted)
     say_warning(phase + "interrupted; what was recorded is kept");
   else
@@ -93,7 +98,7 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
   });
   auto prepared = phases::prepare_all(graph, registry, services, options.plan);
   if (!prepared) {
-    say_problems(prepared.error());
+    say_what_is_wrong(prepared.error(), options.own_graph);
     return {kRejected, {}, {}};
   }
   say_warnings(*prepared);
@@ -121,7 +126,7 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
 
   const auto closed = (*directory)->close(phases::status_word(result.status), result.reason);
   RanGraph ran{exit_code_of(result.status), (*directory)->path(), (*directory)->result()};
-  say_result(result, ran.directory);
+  say_result(result, ran.directory, options.own_graph);
   if (!closed) {
     say_error(closed.error());
     if (ran.exit_code == kDone) ran.exit_code = kRunFailed;

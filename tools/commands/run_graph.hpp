@@ -14,6 +14,7 @@ struct RunGraph {
   nlohmann::json command;            ///< what `rerun` must repeat, for the manifest
   std::filesystem::path executable;  ///< our own, for the workers of sweeps, with their --path
   std::vector<std::string> plugin_path;
+  bool own_graph = false;  ///< nobody wrote the graph file: what is wrong with it is said without places
 };
 
 struct RanGraph {

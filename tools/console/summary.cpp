@@ -9,15 +9,13 @@
 #include <set>
 
 #include "console/console.hpp"
+#include "console/model_summary.hpp"
+#include "console/record_values.hpp"
 
 namespace bodeflow::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kLines = 12;  ///< rows of a table: what fits on a screen
-
-double number(const Json& value) { return value.is_number() ? value.get<double>() : std::nan(""); }
 
 /// At most kLines of `count` lines, evenly spread over the logarithm of the frequency, first and last included.
 std::vector<std::size_t> shown_lines(const Json& frequency) {
@@ -161,12 +159,13 @@ void print_other(const Json& record) {
 
 void print_record(const std::string& name, const Json& record) {
   fmt::print("{}: {}\n", bold(name), record["type"].get<std::string>());
-  if (is_response(record))
-    print_response(record);
-  else if (is_levels(record))
-    print_levels(record);
-  else
-    print_other(record);
+  const Json& type = record["type"];
+  if (is_response(record)) return print_response(record);
+  if (is_levels(record)) return print_levels(record);
+  if (type == "model" && print_model(record)) return;
+  if (type == "comparison" && print_comparison(record)) return;
+  if (type == "monte_carlo" && print_monte_carlo(record)) return;
+  print_other(record);
 }
 
 }  // namespace

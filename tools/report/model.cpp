@@ -1,5 +1,6 @@
 #include "report/model.hpp"
 
+#include <bodeflow/numerics/discretise.hpp>
 #include <bodeflow/numerics/frequency_response.hpp>
 #include <bodeflow/numerics/polynomial.hpp>
 #include <cmath>
@@ -71,6 +72,21 @@ Root root_at(const Array& values, const Array* covariance, std::size_t n) {
   return root;
 }
 
+/// The response of the system with its input held over `hold` and late by `delay`; nothing where it can't be held.
+std::optional<Eigen::VectorXcd> held_response(const numerics::TransferFunction& system, double hold, double delay,
+                                              const Eigen::VectorXd& frequency) {
+  const auto states = numerics::to_state_space(system);
+  if (!states) return {};
+  const auto held = numerics::zero_order_hold(*states, hold, delay);
+  if (!held) return {};
+  const auto curve = numerics::frequency_response(held->model, frequency);
+  Eigen::VectorXcd values(frequency.size());
+  const double late = -2.0 * std::numbers::pi * hold * static_cast<double>(held->delay);
+  for (Eigen::Index k = 0; k < values.size(); ++k)
+    values[k] = curve[static_cast<std::size_t>(k)](0, 0) * std::polar(1.0, late * frequency[k]);
+  return values;
+}
+
 }  // namespace
 
 std::optional<Model> read_model(const Record& record) {
@@ -85,6 +101,9 @@ std::optional<Model> read_model(const Record& record) {
   const double sample_time = record.number("sample_time"), delay = record.number("delay");
   model.sample_time = sample_time > 0.0 ? sample_time : 0.0;
   model.delay = std::isfinite(delay) ? delay : 0.0;
+  const double rate = record.number("sample_rate");
+  if (record.text("hold") == "zero_order" && form == "transfer_function" && model.sample_time == 0.0 && rate > 0.0)
+    model.hold = 1.0 / rate;
   return model;
 }
 
@@ -94,8 +113,10 @@ std::vector<std::complex<double>> Model::response(const std::vector<double>& fre
   if (record->text("form") == "transfer_function") {
     const numerics::TransferFunction system{polynomial_of(*record->array("numerator"), i, j),
                                             polynomial_of(*record->array("denominator"), i, j), sample_time};
-    const Eigen::VectorXcd curve = numerics::frequency_response(system, lines);
+    const auto held = hold > 0.0 ? held_response(system, hold, std::max(delay, 0.0), lines) : std::nullopt;
+    const Eigen::VectorXcd curve = held ? *held : numerics::frequency_response(system, lines);
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = curve[static_cast<Eigen::Index>(k)];
+    if (held) return values;
   } else {
     const Eigen::MatrixXd B = matrix_of(*record->array("B")), C = matrix_of(*record->array("C")),
                           D = matrix_of(*record->array("D"));

@@ -13,13 +13,15 @@ namespace bodeflow::tools::report {
 ///
 /// `form` transfer_function: `numerator` and `denominator` in descending powers, one-dimensional for one output and input, or
 /// outputs x inputs x coefficients (a one-dimensional denominator is common to all). `form` state_space: `A`, `B`, `C`, `D`.
-/// An attribute `delay` [s] multiplies by exp(-s delay). `sample_time` [s] above 0 means discrete time.
+/// An attribute `delay` [s] multiplies by exp(-s delay). `sample_time` [s] above 0 means discrete time. `hold` zero_order of a
+/// continuous-time transfer function with `sample_rate` [Hz]: it was fitted to samples of a held input, and is evaluated as such.
 struct Model {
   const Record* record = nullptr;
   std::size_t outputs = 0;
   std::size_t inputs = 0;
   double sample_time = 0.0;
   double delay = 0.0;
+  double hold = 0.0;  ///< time over which the input was held, 0: not
 
   /// G of output i and input j at each frequency [Hz].
   std::vector<std::complex<double>> response(const std::vector<double>& frequency, std::size_t i, std::size_t j) const;

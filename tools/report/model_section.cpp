@@ -22,18 +22,54 @@ const Array* parameters_of(const Record& record) {
   return parameters == nullptr || parameters->is_complex() || parameters->shape.size() != 1 ? nullptr : parameters;
 }
 
+constexpr double kNormal95 = 1.959963984540054;  ///< quantile 0.975 of the standard normal distribution
+
+std::string interval(double value, double deviation) {
+  if (!std::isfinite(deviation)) return "–";
+  // As many digits as tell the ends apart.
+  const double size = std::max(std::abs(value), kNormal95 * deviation);
+  const int digits = deviation > 0.0 ? std::clamp(3 + static_cast<int>(std::ceil(std::log10(size / deviation))), 3, 12) : 6;
+  return fmt::format("{} to {}", shown(value - kNormal95 * deviation, digits), shown(value + kNormal95 * deviation, digits));
+}
+
+/// Cost beside what noise alone gives, in one sentence.
+void add_cost(Page& page, const Record& record) {
+  const double cost = record.number("cost"), expected = record.number("expected_cost");
+  if (!std::isfinite(cost)) return;
+  std::string text = "Cost " + shown(cost, 5);
+  const double freedom = record.number("cost_degrees_of_freedom"), given = record.number("cost_deviation");
+  const double deviation = std::isfinite(given) ? given : freedom > 0.0 ? std::sqrt(freedom / 2.0) : kNaN;
+  if (std::isfinite(expected)) text += ", expected " + shown(expected, 5);
+  if (std::isfinite(expected) && std::isfinite(deviation)) {
+    text += fmt::format(" ± {}", shown(deviation, 3));
+    const double apart = (cost - expected) / deviation;
+    if (apart > 3.0)
+      text += fmt::format(": {} standard deviations too much. The model lacks something, or the noise is stated too small",
+                          shown(apart, 3));
+    else if (apart < -3.0)
+      text += fmt::format(": {} standard deviations too little. The noise is stated too great", shown(-apart, 3));
+    else
+      text += ": the noise explains what the model leaves";
+  }
+  page.body().open("p").element("b", text + ".").close("p");
+}
+
+void add_conventions(Page& page, const Record& record) {
+  for (const auto& convention : record.texts("conventions")) page.paragraph("Convention: " + convention + ".");
+}
+
 void add_parameters(Page& page, const Record& record) {
   const Array* parameters = parameters_of(record);
   if (parameters == nullptr) return;
   const std::size_t count = parameters->size();
   const Array* covariance = record.array("covariance", {count, count});
   const auto units = record.texts("parameter_units");
-  Table table{"Parameters", {{"Parameter", false}, {"Value"}, {"std"}, {"Relative std"}}, {}};
+  Table table{"Parameters", {{"Parameter", false}, {"Value"}, {"std"}, {"95 % interval", false}, {"Relative std"}}, {}};
   for (std::size_t n = 0; n < std::min(count, kMostRows); ++n) {
     const double value = parameters->re[n], deviation = covariance == nullptr ? kNaN : std::sqrt(covariance->re[n * count + n]);
     const std::string name = record.text_at("parameter_names", n, fmt::format("parameter {}", n + 1));
     table.rows.push_back({with_unit(name, n < units.size() ? units[n] : parameters->unit), shown(value, 6), shown(deviation, 3),
-                          percent(value == 0.0 ? kNaN : deviation / std::abs(value))});
+                          interval(value, deviation), percent(value == 0.0 ? kNaN : deviation / std::abs(value))});
   }
   add_table(page.body(), table);
   if (count > kMostRows) page.note(fmt::format("{} of {} parameters are shown; all stand in result.json.", kMostRows, count));
@@ -130,6 +166,73 @@ void add_residuals(Page& page, const Response& response, const Model& model) {
   add_table(page.body(), table);
 }
 
+constexpr std::size_t kCurvePoints = 400;
+
+/// Frequencies [Hz] of a curve: the fitted band, else a decade around the poles; below half the sample rate.
+std::vector<double> band_of(const Record& record, const Model& model) {
+  double low = 0.0, high = 0.0;
+  if (const auto band = record.attributes.find("band"); band != record.attributes.end() && band->is_array() &&
+                                                        band->size() == 2 && (*band)[0].is_number() && (*band)[1].is_number()) {
+    low = (*band)[0].get<double>();
+    high = (*band)[1].get<double>();
+  } else {
+    for (const Root& pole : roots_of(record, true)) {
+      const double f = frequency_and_damping(pole.value, is_z_plane(record), model.sample_time).first;
+      if (!(f > 0.0) || !std::isfinite(f)) continue;
+      low = low > 0.0 ? std::min(low, f / 10.0) : f / 10.0;
+      high = std::max(high, f * 10.0);
+    }
+  }
+  if (model.sample_time > 0.0) high = std::min(high, 0.5 / model.sample_time);
+  if (!(low > 0.0)) low = high / static_cast<double>(kCurvePoints);
+  if (!(high > low) || !std::isfinite(high)) return {};
+  std::vector<double> frequency;
+  for (std::size_t n = 0; n < kCurvePoints; ++n) {
+    const double part = static_cast<double>(n) / (kCurvePoints - 1);
+    frequency.push_back(high / low < 4.0 ? low + (high - low) * part : low * std::pow(high / low, part));
+  }
+  return frequency;
+}
+
+/// A Bode plot of the model alone, over its band, else over the frequencies of its poles.
+void add_own_response(Page& page, const Record& record, const Model& model) {
+  if (model.outputs != 1 || model.inputs != 1) return;
+  const auto frequency = band_of(record, model);
+  if (frequency.empty()) return;
+  Series magnitude, phase;
+  magnitude.x = phase.x = frequency;
+  std::vector<double> degrees;
+  for (const auto& g : model.response(frequency, 0, 0)) {
+    magnitude.y.push_back(std::abs(g) > 0.0 ? decibel(std::abs(g)) : kNaN);
+    degrees.push_back(std::arg(g) * 180.0 / std::numbers::pi);
+  }
+  phase.y = unwrapped(degrees, std::vector<bool>(degrees.size(), true));
+  const std::string above = record.text_at("output_units", 0, ""), below = record.text_at("input_units", 0, "");
+  Chart chart;
+  chart.name = record.key + "_bode";
+  chart.title = fmt::format("{} to {}", record.text_at("input_names", 0, "input"), record.text_at("output_names", 0, "output"));
+  chart.description = "Magnitude in decibels and phase in degrees of the model over frequency.";
+  chart.x_title = "Frequency [Hz]";
+  chart.x_logarithmic = is_logarithmic(frequency);
+  Panel upper, lower;
+  upper.y = {Scale::decibel,
+             0,
+             1,
+             {},
+             {},
+             above.empty() || below.empty() ? "Magnitude [dB]" : fmt::format("Magnitude [dB re 1 {}/{}]", above, below)};
+  upper.height = 270.0;
+  upper.absolute = true;
+  upper.series.push_back(std::move(magnitude));
+  lower.y = {Scale::degrees, 0, 1, {}, {}, "Phase [°]"};
+  lower.height = 180.0;
+  lower.series.push_back(std::move(phase));
+  chart.panels.push_back(std::move(upper));
+  chart.panels.push_back(std::move(lower));
+  page.heading("Response of the model");
+  page.figure(chart, "The model alone, over the band that was fitted");
+}
+
 /// The last response of the model's size.
 const Response* response_for(const Model& model, const std::vector<Response>& responses) {
   for (auto response = responses.rbegin(); response != responses.rend(); ++response)
@@ -152,8 +255,10 @@ bool add_model(Page& page, const Record& record, const std::vector<Response>& re
   const auto model = read_model(record);
   const bool roots = !roots_of(record, true).empty() || !roots_of(record, false).empty();
   if (!model && !roots && parameters_of(record) == nullptr) return false;
-  add_attributes(page, record, {"parameter_names", "parameter_units"});
+  add_cost(page, record);
   add_parameters(page, record);
+  add_conventions(page, record);
+  add_attributes(page, record, {"parameter_names", "parameter_units", "conventions", "cost", "expected_cost"});
   add_polynomials(page, record);
   if (const Response* response = model ? response_for(*model, responses) : nullptr; response != nullptr) {
     page.heading("Model and data");
@@ -161,6 +266,8 @@ bool add_model(Page& page, const Record& record, const std::vector<Response>& re
       page.figure(chart, fmt::format("The model over '{}' with the data's {} region", response->record->key,
                                      percent(response->confidence)));
     add_residuals(page, *response, *model);
+  } else if (model) {
+    add_own_response(page, record, *model);
   }
   if (const auto wide = draw_pole_zero(record, kWide)) {
     page.heading("Poles and zeros");

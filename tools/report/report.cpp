@@ -26,6 +26,10 @@ std::string kind_of(const std::string& type) {
                                                          {"controller", "controller"},
                                                          {"trace", "residual trace"},
                                                          {"sweep", "sweep"},
+                                                         {"comparison", "comparison of models"},
+                                                         {"order_scan", "order scan"},
+                                                         {"whiteness", "whiteness of the residual"},
+                                                         {"residual", "residual"},
                                                          {"delay_estimate", "delay"}};
   const auto found = kKinds.find(type);
   return found == kKinds.end() ? type : found->second;
@@ -37,6 +41,10 @@ bool add_by_type(Page& page, const Record& record, const std::vector<Response>& 
   if (record.type == "spectral_matrix") return add_spectral_matrix(page, record);
   if (record.type == "model") return add_model(page, record, responses);
   if (record.type == "monte_carlo") return add_monte_carlo(page, record);
+  if (record.type == "comparison") return add_comparison(page, record);
+  if (record.type == "order_scan") return add_order_scan(page, record);
+  if (record.type == "whiteness") return add_whiteness(page, record);
+  if (record.type == "residual") return add_residual(page, record);
   if (record.type == "controller") return add_controller(page, record);
   if (record.type == "trace") return add_trace(page, record);
   if (record.type == "sweep") return add_sweep(page, record);

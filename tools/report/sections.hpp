@@ -14,6 +14,13 @@ bool add_spectral_matrix(Page& page, const Record& record);
 /// `responses`: all of the run, for the comparison with data.
 bool add_model(Page& page, const Record& record, const std::vector<Response>& responses);
 bool add_monte_carlo(Page& page, const Record& record);
+/// Fits, signals, correlations, parameters and responses of models side by side.
+bool add_comparison(Page& page, const Record& record);
+bool add_order_scan(Page& page, const Record& record);
+/// The power of a residual by bands.
+bool add_whiteness(Page& page, const Record& record);
+/// What a model leaves of a frequency response, by bands and line by line.
+bool add_residual(Page& page, const Record& record);
 bool add_controller(Page& page, const Record& record);
 bool add_trace(Page& page, const Record& record);
 bool add_sweep(Page& page, const Record& record);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "five_state_motor.hpp"
 #include "records/signals.hpp"
 #include "standstill_motor.hpp"
 #include "turning_motor.hpp"
@@ -58,6 +59,10 @@ Expected<std::unique_ptr<Motor>> make_motor(const MotorSetup& setup) {
   }
   if (setup.mechanics.locked && !saturates) {
     return std::make_unique<StandstillMotor>(*network, setup.mechanics.pole_pairs, setup.period_s);
+  }
+  if (!setup.mechanics.locked && !saturates && network->loops() == 2) {
+    const double rate = fastest(network->inductance, network->resistance);
+    return std::make_unique<FiveStateMotor>(setup.electrical, rate, setup.mechanics, setup.period_s);
   }
   switch (network->loops()) {
     case 2:

@@ -65,9 +65,9 @@ class Motor {
   virtual void set_stator_resistance(double ohm) = 0;
 };
 
-/// The motor at rest without current. A linear motor at standstill is solved exactly (standstill_motor.hpp), any other by
-/// Runge-Kutta steps (turning_motor.hpp). Errors: those of `motor_network`; saturation without leakage on both sides; a shaft
-/// that may turn without inertia.
+/// The motor without current. A linear motor at standstill is solved exactly (standstill_motor.hpp), any other by Runge-Kutta
+/// steps: model (16) by five_state_motor.hpp, hidden loops and saturation by turning_motor.hpp. Errors: those of `motor_network`;
+/// saturation without leakage on both sides; a shaft that may turn without inertia.
 numerics::Expected<std::unique_ptr<Motor>> make_motor(const MotorSetup& setup);
 
 }  // namespace bodeflow::drive

@@ -3,15 +3,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "runge_kutta_parts.hpp"
 #include "voltage_steps.hpp"
 
 namespace bodeflow::drive {
 namespace {
-
-constexpr double kMostParts = 1e5;    // of an interval; more and the motor counts as beyond all numbers
-constexpr double kLongestStep = 0.5;  // of 1 / (largest decay rate + |omega|)
 
 /// The inverse of the leakage, zero in the row and column of an iron loss, which has none.
 LoopMatrix inverse_leakage(const MotorNetwork& network) {
@@ -54,10 +51,11 @@ void TurningMotor<kLoops>::advance(const std::array<Pulse, 3>& legs, double link
 template <int kLoops>
 void TurningMotor<kLoops>::interval(double length, AlphaBeta voltage) {
   voltage_ = {voltage.alpha, voltage.beta};
-  const double rate = fastest_ + mechanics_.pole_pairs * std::abs(state_.speed);
-  const double parts = std::max(1.0, std::ceil(length * rate / kLongestStep));
-  if (parts > kMostParts) state_.speed = std::numeric_limits<double>::quiet_NaN();
-  if (!std::isfinite(state_.speed)) return;
+  const double parts = runge_kutta_parts(length, fastest_ + mechanics_.pole_pairs * std::abs(state_.speed));
+  if (!(parts >= 1.0)) {
+    state_.speed = parts;
+    return;
+  }
   const double h = length / parts;
   for (double done = 0.0; done < parts; done += 1.0) {
     const State k1 = derivative(state_);

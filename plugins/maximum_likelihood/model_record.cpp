@@ -12,6 +12,8 @@ namespace bodeflow::maximum_likelihood {
 
 namespace {
 
+constexpr double kEdge = 1e-9;  // relative rounding at the edge of a band
+
 std::string weighting_name(Weighting weighting) {
   if (weighting == Weighting::variance) return "variance";
   return weighting == Weighting::even ? "none" : "relative";
@@ -137,9 +139,10 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> bands_of(const Eigen::VectorX
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
     const bool last = b + 2 == edges.size();
     Eigen::Index first = 0, end = 0;
-    while (first < lines && frequency[first] < edges[b]) ++first;
+    const double from = edges[b] * (1.0 - kEdge), to = edges[b + 1] * (last ? 1.0 + kEdge : 1.0 - kEdge);
+    while (first < lines && frequency[first] < from) ++first;
     end = first;
-    while (end < lines && (frequency[end] < edges[b + 1] || (last && frequency[end] == edges[b + 1]))) ++end;
+    while (end < lines && frequency[end] < to) ++end;
     if (end > first) bands.push_back({first, end - 1});
   }
   return bands;

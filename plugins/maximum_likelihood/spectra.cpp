@@ -11,6 +11,7 @@ namespace bodeflow::maximum_likelihood {
 namespace {
 
 constexpr double kNyquist = 1e-9;         // relative distance to half the sample rate that counts as there
+constexpr double kEdge = 1e-9;            // relative: the rounding of units does not take a line from the end of a band
 constexpr double kLeastMagnitude = 1e-3;  // of the median, for relative weights
 
 std::string line_text(const Spectra& s, Eigen::Index k) {
@@ -87,7 +88,8 @@ Spectra evenly_weighted(const Spectra& spectra, bool relative) {
 Spectra part_within(const Spectra& spectra, double low_rad_s, double high_rad_s) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < spectra.lines(); ++k) {
-    if (spectra.omega_rad_s[k] >= low_rad_s && spectra.omega_rad_s[k] <= high_rad_s) kept.push_back(k);
+    const double omega = spectra.omega_rad_s[k];
+    if (omega >= low_rad_s * (1.0 - kEdge) && omega <= high_rad_s * (1.0 + kEdge)) kept.push_back(k);
   }
   Spectra s = spectra;
   s.omega_rad_s = spectra.omega_rad_s(kept);

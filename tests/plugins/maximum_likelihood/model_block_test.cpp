@@ -98,6 +98,11 @@ TEST_CASE("maximum_likelihood.model: model, scan and residual of two outputs sta
   CHECK(scan.integer("chosen").value() == 4);
   CHECK(scan.array("mdl")->size == 5);
   CHECK(residual.type() == "residual");
+  const auto limits = residual.array("band")->as<double>();
+  CHECK(limits[0] == Approx(1.0));
+  CHECK(limits[1] == Approx(9.0));
+  CHECK(limits[2] == Approx(10.0));
+  CHECK(limits[3] == Approx(40.0));
   const auto bands = residual.array("band_residual");
   REQUIRE(bands);
   CHECK(bands->shape[0] == 2);

@@ -54,8 +54,14 @@ void Motor::describe(Describe& d) {
       "models, Automatica 33 (1997) 1073");
   d.stream_in(input).optional().doc("stator voltage, one axis");
   d.stream_in(output).optional().doc("stator current of that axis");
-  d.message_in(response).record_type("frequency_response").doc("measured responses with mean spectra: one record a band");
-  d.message_in(matrix).record_type("spectral_matrix").doc("spectral matrices: one record a band; frisch and none prefer them");
+  d.message_in(response)
+      .optional()
+      .record_type("frequency_response")
+      .doc("measured responses with mean spectra: one record a band");
+  d.message_in(matrix)
+      .optional()
+      .record_type("spectral_matrix")
+      .doc("spectral matrices: one record a band; frisch and none prefer them");
   d.message_out(model).record_type("model").doc("gamma, alpha, Lm_beta, sigma with covariance");
   d.message_out(identifiable).record_type("parameters").doc("Rs, Ls, Lr/Rr, sigma: what the terminals tell");
   d.message_out(physical).record_type("parameters").doc("Rs, Rr, Ls, Lr, Lm under the assumption Ls = Lr");

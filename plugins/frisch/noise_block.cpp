@@ -1,5 +1,7 @@
 #include "noise_block.hpp"
 
+#include <algorithm>
+
 #include "noise_record.hpp"
 
 namespace bodeflow::frisch {
@@ -37,6 +39,7 @@ void Noise::receive(int, const RecordView& record, Io&) {
 
 void Noise::finish(Io& io) {
   if (bands_.empty()) fail("no record arrived at `matrix`");
+  std::stable_sort(bands_.begin(), bands_.end(), [](const Band& a, const Band& b) { return a.mean.omega[0] < b.mean.omega[0]; });
   std::vector<FrischNoise> found;
   for (const Band& band : bands_) {
     const auto noise = frisch_noise(band.power, outliers_, measure_);

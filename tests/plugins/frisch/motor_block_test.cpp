@@ -268,8 +268,8 @@ TEST_CASE("frisch.noise: both passes and the pooled noise of each band, with the
   block.configure();
   block.resolve({});
   block.activate(1, Rate(1, 1));
-  block.receive(matrix_record(t.low_record, t.low, 16), 0.0);
   block.receive(matrix_record(t.high_record, t.high, 16), 0.0);
+  block.receive(matrix_record(t.low_record, t.low, 16), 0.0);
   block.finish();
   REQUIRE(block.records().size() == 1);
   const RecordView r(*block.records()[0]);

@@ -50,8 +50,8 @@ class Effect {
 
   /// Time by which the output comes late [s].
   virtual double delay_s(const double*) const { return 0.0; }
-  /// What is lost of the effort (voltage, force) at that flow (current, velocity).
-  virtual double effort_lost(const double*, double) const { return 0.0; }
+  /// What is lost of the effort (voltage, force) at that flow (current, velocity); never falls with the flow.
+  virtual Law effort_lost(const double*, double) const { return {}; }
   /// What is added to the stored quantity x in the law of the store, flow = (x + extra(x)) / L: magnetising current over flux, force
   /// over displacement.
   virtual Law extra_stored(const double*, double) const { return {}; }

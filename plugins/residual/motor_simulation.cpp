@@ -9,10 +9,17 @@ namespace {
 
 // e-folds of the slower mode that a simulation runs before its period is taken.
 constexpr double kWarmUp = 14.0;
+// Of the current at the end of a step.
+constexpr int kMostNewton = 8;
+constexpr double kSolved = 1e-12;
 
-double lost(const Extension& extension, double current) {
-  double sum = 0.0;
-  for (const AddedEffect& added : extension) sum += added.effect->effort_lost(added.values.data(), current);
+Law lost(const Extension& extension, double current) {
+  Law sum;
+  for (const AddedEffect& added : extension) {
+    const Law law = added.effect->effort_lost(added.values.data(), current);
+    sum.value += law.value;
+    sum.slope += law.slope;
+  }
   return sum;
 }
 
@@ -27,11 +34,12 @@ class Circuit {
         per_lm_(1.0 / motor.lm),
         extension_(extension) {}
 
-  void set_step(double h) { h_ = h; }
+  /// What a step of that length needs.
+  using Step = double;
+  Step prepared(double h) const { return h; }
   double current() const { return x_.current; }
 
-  void step(double voltage) {
-    const double h = h_;
+  void step(Step h, double voltage) {
     const State k1 = slope(x_, voltage);
     const State k2 = slope({x_.current + 0.5 * h * k1.current, x_.flux + 0.5 * h * k1.flux}, voltage);
     const State k3 = slope({x_.current + 0.5 * h * k2.current, x_.flux + 0.5 * h * k2.flux}, voltage);
@@ -54,42 +62,63 @@ class Circuit {
       extra_slope += law.slope;
     }
     const double magnetising = (x.flux + extra) * per_lm_, inverse = (1.0 + extra_slope) * per_lm_;
-    const double a = voltage - lost(extension_, x.current) - rs_ * x.current, b = rr_ * (x.current - magnetising);
+    const double a = voltage - lost(extension_, x.current).value - rs_ * x.current, b = rr_ * (x.current - magnetising);
     const double flux = (a + b) / (2.0 + leakage_ * inverse);
     return {(a - flux) * per_leakage_, flux};
   }
 
   double rs_, rr_, leakage_, per_leakage_, per_lm_;
   const Extension& extension_;
-  double h_ = 0.0;
   State x_;
 };
 
-/// The two modes of the linear motor, each moved exactly while the voltage is held.
+/// The two modes of the linear motor, each moved exactly while the voltage is held. What is lost follows from the current at the end of the
+/// step, so that a loss which stops the current holds it at zero, as a dead time does, and does not make it chatter.
 class Modes {
  public:
-  Modes(const MotorModes& modes, const Extension& extension) : modes_(modes), extension_(extension) {}
+  Modes(const MotorModes& modes, const Extension& extension)
+      : modes_(modes), extension_(extension), at_zero_(lost(extension, 0.0)) {}
 
-  void set_step(double h) {
-    if (h == h_) return;
-    h_ = h;
+  struct Step {
+    double decay[2], gain[2];
+    double slow = 1.0;  ///< 1 / (1 + gain lost'(0))
+  };
+  Step prepared(double h) const {
+    Step s;
     for (int i = 0; i < 2; ++i) {
-      decay_[i] = std::exp(modes_.pole[i] * h);
-      gain_[i] = modes_.residue[i] * std::expm1(modes_.pole[i] * h) / modes_.pole[i];
+      s.decay[i] = std::exp(modes_.pole[i] * h);
+      s.gain[i] = modes_.residue[i] * std::expm1(modes_.pole[i] * h) / modes_.pole[i];
     }
+    s.slow = 1.0 / (1.0 + (s.gain[0] + s.gain[1]) * at_zero_.slope);
+    return s;
   }
   double current() const { return x_[0] + x_[1]; }
 
-  void step(double voltage) {
-    const double u = voltage - lost(extension_, current());
-    for (int i = 0; i < 2; ++i) x_[i] = decay_[i] * x_[i] + gain_[i] * u;
+  void step(const Step& s, double voltage) {
+    const double gain = s.gain[0] + s.gain[1], free = s.decay[0] * x_[0] + s.decay[1] * x_[1] + gain * voltage;
+    const double u = voltage - loss(free, gain, s.slow);
+    for (int i = 0; i < 2; ++i) x_[i] = s.decay[i] * x_[i] + s.gain[i] * u;
   }
 
  private:
+  /// lost(i) with i = free - gain lost(i), by Newton's method from i = 0, where odd laws that flatten out are steepest.
+  double loss(double free, double gain, double slow) const {
+    if (extension_.empty()) return 0.0;
+    double i = (free - gain * at_zero_.value) * slow;
+    Law law = lost(extension_, i);
+    for (int n = 0; n < kMostNewton; ++n) {
+      const double error = free - gain * law.value - i;
+      if (std::abs(error) <= kSolved * std::abs(free)) break;
+      i += error / (1.0 + gain * law.slope);
+      law = lost(extension_, i);
+    }
+    return law.value;
+  }
+
   MotorModes modes_;
   const Extension& extension_;
-  double h_ = 0.0;
-  double x_[2] = {0.0, 0.0}, decay_[2] = {0.0, 0.0}, gain_[2] = {0.0, 0.0};
+  Law at_zero_;
+  double x_[2] = {0.0, 0.0};
 };
 
 Eigen::Index modulo(Eigen::Index n, Eigen::Index period) { return (n % period + period) % period; }
@@ -131,12 +160,14 @@ Eigen::VectorXd run(Motor motor, const Timing& t, const Eigen::VectorXd& voltage
   const double offset_s = t.sample_time_s - (t.delay_s - whole * t.sample_time_s);
   const Eigen::Index late = static_cast<Eigen::Index>(whole) + 1;
   const std::vector<Piece> pieces = pieces_of(t, offset_s);
+  std::vector<typename Motor::Step> steps;
+  for (const Piece& piece : pieces) steps.push_back(motor.prepared(piece.step_s));
   Eigen::VectorXd current(period);
   for (Eigen::Index m = -warm_up; m < period; ++m) {
     const double* held = voltage.data() + modulo(m, period) * t.held_per_sample;
-    for (const Piece& piece : pieces) {
-      motor.set_step(piece.step_s);
-      for (int s = 0; s < piece.steps; ++s) motor.step(held[piece.held]);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const Piece& piece = pieces[i];
+      for (int s = 0; s < piece.steps; ++s) motor.step(steps[i], held[piece.held]);
       if (piece.sampled && m >= 0) current[modulo(m + late, period)] = motor.current();
     }
   }

@@ -1,19 +1,17 @@
 #include "dead_time.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 #include "records/signals.hpp"
 
 namespace bodeflow::residual {
 
 std::vector<Parameter> DeadTime::parameters() const {
-  return {{"dead_time_voltage", "V", 0.0, 1e4, false, 1.0}, {"dead_time_width", "A", 0.0, 1e4, true, 1.0}};
+  return {{"dead_time_voltage", "V", 0.0, 1e4, true, 1.0}, {"dead_time_width", "A", 0.0, 1e4, true, 1.0}};
 }
 
 std::vector<Eigen::VectorXd> DeadTime::starts(const Scales& scales) const {
-  std::vector<Eigen::VectorXd> starts;
-  for (const double share : {0.1, 0.4}) starts.push_back(Eigen::Vector2d(share * scales.effort, 0.02 * scales.flow));
-  return starts;
+  return {Eigen::Vector2d(0.2 * scales.effort, 0.01 * scales.flow)};
 }
 
 std::string DeadTime::sentence(const Eigen::VectorXd& value, const Eigen::VectorXd& std, const Scales&) const {
@@ -21,6 +19,9 @@ std::string DeadTime::sentence(const Eigen::VectorXd& value, const Eigen::Vector
          ") lost against the current";
 }
 
-double DeadTime::effort_lost(const double* p, double current) const { return p[0] * std::clamp(current / p[1], -1.0, 1.0); }
+Law DeadTime::effort_lost(const double* p, double current) const {
+  if (std::abs(current) < p[1]) return {p[0] * current / p[1], p[0] / p[1]};
+  return {std::copysign(p[0], current), 0.0};
+}
 
 }  // namespace bodeflow::residual

@@ -16,7 +16,7 @@ class DeadTime final : public Effect {
   std::string sentence(const Eigen::VectorXd& value, const Eigen::VectorXd& std, const Scales& scales) const override;
   bool linear() const override { return false; }
   int steps_per_sample() const override { return 10; }
-  double effort_lost(const double* p, double current) const override;
+  Law effort_lost(const double* p, double current) const override;
 };
 
 }  // namespace bodeflow::residual

@@ -13,7 +13,7 @@ std::vector<Parameter> Saturation::parameters() const {
 
 std::vector<Eigen::VectorXd> Saturation::starts(const Scales& scales) const {
   const double square = scales.stored * scales.stored;
-  return {Eigen::Vector2d(0.5 / square, 0.0), Eigen::Vector2d(4.0 / square, 2.0 / square)};
+  return {Eigen::Vector2d(1.0 / square, 0.0)};
 }
 
 Law Saturation::extra_stored(const double* p, double flux) const {

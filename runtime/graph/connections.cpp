@@ -351,8 +351,10 @@ class Wiring {
     }
     if (!source) return;
     const std::string port = right.parameters ? "parameters" : right.choices.front()->name;
-    check_record(source->port->record_type, taken, fmt::format("${}.{}.{}", from.phase, from.block, source->port->name),
-                 right.text.block + "." + port, from.spot);
+    const auto swept = [&](const Phase& p) { return p.name == from.phase && !p.sweep.empty(); };
+    const bool merged = std::any_of(earlier_.begin(), earlier_.end(), swept);  // of its runs: one record
+    check_record(merged ? "sweep" : source->port->record_type, taken,
+                 fmt::format("${}.{}.{}", from.phase, from.block, source->port->name), right.text.block + "." + port, from.spot);
     phase_.references.push_back({from.phase, from.block, source->port->name, to, from.spot.place()});
   }
 

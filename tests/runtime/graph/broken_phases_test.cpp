@@ -223,6 +223,20 @@ g.yaml:13:37: repeat: unknown key 'times'; allowed: max, until
 g.yaml:16:11: when: found '$one.tuner.ok = true', allowed: $phase.block.attribute or $phase.block.port.attribute, then ==, !=, <, <=, > or >= and a value
 g.yaml:17:13: repeat: found '3', allowed: a map such as {max: 5, until: ...})y"},
 
+{"references to a swept phase", R"y(bodeflow: 1
+phases:
+  - name: runs
+    run: {duration: 1 s}
+    sweep: {seed: 1..3}
+    blocks: {tuner: {block: control.tuner}, sine: {block: generators.sine}}
+  - name: after
+    blocks: {fit: {block: identify.fit}, log: {block: output.records}}
+    connections:
+      - $runs.tuner.changes -> log
+      - $runs.tuner.changes -> fit
+)y",
+R"y(g.yaml:11:9: '$runs.tuner.changes' sends records of type 'sweep', 'fit.data' takes 'frequency_response')y"},
+
 {"sweep",
 R"y(bodeflow: 1
 phases:

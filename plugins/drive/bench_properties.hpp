@@ -2,8 +2,9 @@
 
 #include <bodeflow/error.hpp>
 #include <bodeflow/record_view.hpp>
-#include <cmath>
 #include <string>
+
+#include "records/signals.hpp"
 
 namespace bodeflow::drive {
 
@@ -14,8 +15,8 @@ inline void take_property(const RecordView& record, const char* name, double lea
   const auto found = record.number(name);
   if (!found) fail(std::string("property ") + name + " is not a number");
   if (!(*found >= least && *found <= most)) {
-    fail(std::string("property ") + name + " = " + std::to_string(*found) + ", allowed: " + std::to_string(least) + " to " +
-         std::to_string(most));
+    fail(std::string("property ") + name + " = " + records::short_number(*found) + ", allowed: " + records::short_number(least) +
+         " to " + records::short_number(most));
   }
   value = *found;
 }

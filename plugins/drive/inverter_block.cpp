@@ -5,9 +5,12 @@
 #include <string>
 
 #include "bench_properties.hpp"
+#include "records/signals.hpp"
 
 namespace bodeflow::drive {
 namespace {
+
+using records::short_number;
 
 constexpr double kLongestDeadTime = 0.2;  // of a PWM period: pulse and gap of two dead times need 0.25
 
@@ -80,12 +83,12 @@ void Inverter::resolve(Facts& f) {
   if (!u.known) return;
   if (u.channels > 2) fail("'reference' has " + std::to_string(u.channels) + " channels, allowed: 1 (alpha) or 2 (alpha, beta)");
   if (pwm_hz_ > 0 && std::abs(u.rate.hz() - pwm_hz_) > 1e-9 * pwm_hz_) {
-    fail("'reference' has " + std::to_string(u.rate.hz()) + " samples/s, pwm is " + std::to_string(pwm_hz_) +
+    fail("'reference' has " + short_number(u.rate.hz()) + " samples/s, pwm is " + short_number(pwm_hz_) +
          " Hz; allowed: one sample a PWM period (filters.hold raises the rate)");
   }
   const double longest = kLongestDeadTime / u.rate.hz();
   if (std::max(given_.dead_time_s, compensation_time_s_) > longest) {
-    fail("dead_time and compensation_time: at most a fifth of the PWM period, " + std::to_string(longest * 1e6) + " us");
+    fail("dead_time and compensation_time: at most a fifth of the PWM period, " + short_number(longest * 1e6) + " us");
   }
   require_axes(f.in(current), "current", u.channels);
   require_axes(f.in(measured_current), "measured_current", u.channels);
@@ -178,8 +181,8 @@ void Inverter::finish(Io& io) {
   const double range = linear_range(modulation_);
   if (limited_ > 0) {
     log_warning("over-modulation in " + std::to_string(limited_) + " of " + std::to_string(periods_) +
-                " PWM periods: the largest reference was " + std::to_string(largest_) + " V, given whole up to " +
-                std::to_string(range) + " V");
+                " PWM periods: the largest reference was " + short_number(largest_) + " V, given whole up to " +
+                short_number(range) + " V");
   }
   RecordBuilder r("modulation");
   r.set("periods", periods_);

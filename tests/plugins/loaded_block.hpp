@@ -263,6 +263,15 @@ class LoadedBlock {
     }
     out_streams.push_back(
         {places.back().data(), 0, count * output_flows_[0].samples, static_cast<std::uint32_t>(out.size()), outputs_[0].element});
+    std::list<Channels> others;  // outputs that the test does not look at
+    for (std::size_t o = 1; o < outputs_.size(); ++o) {
+      const std::uint64_t samples = count * output_flows_[o].samples;
+      auto& other = others.emplace_back(static_cast<std::size_t>(outputs_[o].channels),
+                                        std::vector<double>(samples * doubles(outputs_[o].element)));
+      places.emplace_back();
+      for (auto& channel : other) places.back().push_back(channel.data());
+      out_streams.push_back({places.back().data(), 0, samples, static_cast<std::uint32_t>(other.size()), outputs_[o].element});
+    }
     bf_process p{};
     p.struct_size = sizeof p;
     p.inputs = in_streams.data();

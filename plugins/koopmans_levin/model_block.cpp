@@ -1,5 +1,6 @@
 #include "model_block.hpp"
 
+#include <algorithm>
 #include <bodeflow/units.hpp>
 #include <cmath>
 
@@ -13,6 +14,7 @@ namespace bodeflow::koopmans_levin {
 namespace {
 
 constexpr std::int64_t kHighestOrder = 64;
+constexpr std::int64_t kMostSamples = std::int64_t{1} << 30;
 constexpr std::int64_t kMostLags = 10'000;
 
 std::optional<double> number_or_auto(const std::string& name, const std::string& text) {
@@ -96,7 +98,8 @@ void ModelBlock::describe(Describe& d) {
   d.parameter("route", "frequency_domain")
       .choices({"frequency_domain", "time_domain"})
       .doc("time_domain: the classical equations, the same numbers over the full range");
-  d.parameter("max_samples", std::int64_t{10'000'000}).range(10, std::int64_t{1} << 30).doc("more samples are refused");
+  d.optional<std::int64_t>("samples").range(1, kMostSamples).doc("takes only the first so many; default: all");
+  d.parameter("max_samples", std::int64_t{10'000'000}).range(10, kMostSamples).doc("more samples are refused");
 }
 
 void ModelBlock::configure(const Parameters& p) {
@@ -117,6 +120,9 @@ void ModelBlock::configure(const Parameters& p) {
   band_ = p.text("band");
   noise_band_ = p.text("noise_band");
   most_samples_ = p.integer("max_samples");
+  wanted_ = p.has("samples") ? p.integer("samples") : 0;
+  if (wanted_ < 0 || wanted_ > kMostSamples)
+    fail("samples " + std::to_string(wanted_) + "; allowed: 1 to " + std::to_string(kMostSamples));
   const bool measured = s.output_noise || !noise_band_.empty();
   if (s.ratio && measured) fail("ratio is given, so output_noise and noise_band have no use: leave them out, or set ratio: auto");
   if (s.output_noise && !noise_band_.empty())
@@ -132,7 +138,7 @@ void ModelBlock::resolve(Facts& f) {
     if (s->channels != 1)
       fail(std::string("the ") + (s == &u ? "input" : "output") + " has " + std::to_string(s->channels) +
            " channels; allowed: one");
-    if (s->length > most_samples_)
+    if (wanted_ == 0 && s->length > most_samples_)
       fail(std::to_string(s->length) + " samples are more than max_samples, " + std::to_string(most_samples_));
   }
   if (!u.rate.known()) fail("input 'input' has no sample rate");
@@ -152,6 +158,7 @@ void ModelBlock::resolve(Facts& f) {
 void ModelBlock::activate(const Activation&) { reset(); }
 
 void ModelBlock::collect(std::span<const double> samples, const char* name, std::vector<double>& into) const {
+  if (wanted_ > 0) samples = samples.first(std::min(samples.size(), static_cast<std::size_t>(wanted_) - into.size()));
   for (std::size_t n = 0; n < samples.size(); ++n) {
     if (std::isfinite(samples[n])) continue;
     fail(std::string(name) + " '" + (name == std::string("input") ? input_signal_ : output_signal_).names[0] + "': sample " +
@@ -177,6 +184,7 @@ Settings ModelBlock::settings_for(std::int64_t samples) const {
 void ModelBlock::finish(Io& io) {
   if (u_.empty()) fail("no samples arrived");
   const auto size = static_cast<Eigen::Index>(u_.size());
+  if (size < wanted_) fail("only " + records::counted(size, "sample") + " arrived; samples asks for " + std::to_string(wanted_));
   const Eigen::Map<const Eigen::VectorXd> u(u_.data(), size), y(y_.data(), size);
   const Settings settings = settings_for(size);
   const auto found = identify(u, y, settings);

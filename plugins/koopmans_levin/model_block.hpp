@@ -33,6 +33,7 @@ class ModelBlock final : public Block {
   Settings settings_;  // bands apart: they depend on the number of samples
   std::string band_, noise_band_;
   std::int64_t most_samples_ = 0;
+  std::int64_t wanted_ = 0;  // 0: all
   double rate_hz_ = 1.0;
   records::Signals input_signal_, output_signal_;
   double period_ = 0.0;  // of the excitation, samples; 0: not known

@@ -165,6 +165,15 @@ TEST_CASE("koopmans_levin.model: the records are the same bytes for every size o
   CHECK(std::vector(all.begin() + 3, all.end()) == expected);
 }
 
+TEST_CASE("koopmans_levin.model: takes the first samples only where a number of them is given") {
+  const Records& r = noisy_example();
+  Driver first, alone;
+  first.set("samples", std::int64_t{700});
+  run(first, r.input, r.output, {{"order", "2"}, {"ratio", "6"}});
+  run(alone, r.input.head(700), r.output.head(700), {{"order", "2"}, {"ratio", "6"}});
+  CHECK(bytes_of(first.records()) == bytes_of(alone.records()));
+}
+
 TEST_CASE("koopmans_levin.model: finds order and ratio where neither is given") {
   const Records& r = noisy_example();
   Driver block;
@@ -283,6 +292,10 @@ TEST_CASE("koopmans_levin.model: refuses by name what it cannot use") {
   block.set("max_samples", std::int64_t{100});
   CHECK(failure_of([&] { run(block, noisy_example().input, noisy_example().output, {}); }) ==
         "the records have more than max_samples, 100 samples");
+  Driver more;
+  more.set("samples", std::int64_t{4000});
+  CHECK(failure_of([&] { run(more, noisy_example().input, noisy_example().output, {}); }) ==
+        "only 3000 samples arrived; samples asks for 4000");
   Driver empty;
   empty.configure();
   empty.resolve(kFacts);

@@ -13,7 +13,7 @@ void KnownMotor::describe(Describe& d) {
       "simulated motors, and for data from a nameplate or from no-load and locked-rotor tests.");
   d.message_in(estimate).optional().record_type("model").doc("the model to place beside it; the last one counts");
   d.message_out(model).record_type("model");
-  d.message_out(comparison).record_type("comparison").doc("where an estimate arrived: it beside the known values");
+  d.message_out(deviation).record_type("deviation").doc("where an estimate arrived: it beside the known values");
   d.required<double>("rs").unit("ohm").above(0.0).doc("stator resistance");
   d.required<double>("rr").unit("ohm").above(0.0).doc("rotor resistance");
   d.required<double>("ls").unit("H").above(0.0).doc("stator inductance");
@@ -41,7 +41,7 @@ void KnownMotor::receive(int, const RecordView& record, Io&) {
 
 RecordBuilder KnownMotor::compared() const {
   const Eigen::VectorXd known = motor_.vector(), found = estimate_->parameters;
-  RecordBuilder r("comparison");
+  RecordBuilder r("deviation");
   r.set("parameter_names", estimate_->parameter_names);
   r.set("parameter_units", estimate_->parameter_units);
   records::put_list<double>(r, "known", "", known);
@@ -74,7 +74,7 @@ void KnownMotor::finish(Io& io) {
       "one axis of the stator frame, amplitude-invariant Clarke: peak values of a phase, per-phase star equivalent circuit",
       "known, not estimated"};
   io.emit(model, records::write_model(d));
-  if (estimate_) io.emit(comparison, compared());
+  if (estimate_) io.emit(deviation, compared());
 }
 
 void KnownMotor::reset() { estimate_.reset(); }

@@ -14,7 +14,7 @@ class KnownMotor final : public Block {
  public:
   static constexpr MessageIn estimate{0, "estimate"};
   static constexpr MessageOut model{0, "model"};
-  static constexpr MessageOut comparison{1, "comparison"};
+  static constexpr MessageOut deviation{1, "deviation"};
 
   static void describe(Describe& d);
   void configure(const Parameters& p) override;

@@ -14,7 +14,8 @@ Expected<AmplitudeChoice> choose_amplitude(const records::Recording& pilot, doub
   AmplitudeChoice c;
   const double bins = static_cast<double>(e.period * e.periods);
   c.noise_std = std::sqrt(e.floor.at(e.frequency_hz).mean() * bins);
-  c.output_rms = std::sqrt(std::max(2.0 * (e.output.tail(e.lines() - 1).squaredNorm() - e.variance.tail(e.lines() - 1).sum()), 0.0));
+  c.output_rms =
+      std::sqrt(std::max(2.0 * (e.output.tail(e.lines() - 1).squaredNorm() - e.variance.tail(e.lines() - 1).sum()), 0.0));
   c.input_peak = pilot.input.col(0).cwiseAbs().maxCoeff();
   c.output_peak = pilot.output.col(0).cwiseAbs().maxCoeff();
   if (!(c.output_rms > 0.0) || !(c.input_peak > 0.0))

@@ -5,16 +5,21 @@
 namespace bodeflow::residual {
 
 void AmplitudeBlock::describe(Describe& d) {
-  d.id("residual.amplitude").summary("Chooses the amplitude of the next experiment from a pilot: noise, current and declared limits.");
+  d.id("residual.amplitude")
+      .summary("Chooses the amplitude of the next experiment from a pilot: noise, current and declared limits.");
   d.doc(
-      "The amplitude at which the output has the wanted signal-to-noise ratio, everything scaled from the pilot, or as much as the limits "
+      "The amplitude at which the output has the wanted signal-to-noise ratio, everything scaled from the pilot, or as much as "
+      "the limits "
       "allow. It is sent as a `parameter_change`, so that a later phase connects it to a block: $pilot.amplitude -> "
       "amplifier.parameters. Where the plant is not linear the output may grow faster than the amplitude: `margin` is for that.");
   d.message_in(in).record_type("recording").doc("the pilot, periodic, one input and one output");
   d.message_out(out).record_type("parameter_change").doc("parameter and value, and what they follow from");
   d.parameter("parameter", "gain").doc("name of the live parameter that is to change");
   d.parameter("pilot", 1.0).unit("").above(0).doc("its value in the pilot");
-  d.parameter("signal_to_noise", 30.0).unit("dB").range(0, 120).doc("wanted, of the output: root mean squares of signal and noise");
+  d.parameter("signal_to_noise", 30.0)
+      .unit("dB")
+      .range(0, 120)
+      .doc("wanted, of the output: root mean squares of signal and noise");
   d.required<double>("largest_input").unit("").above(0).doc("peak value that is allowed, in the unit of the input");
   d.required<double>("largest_output").unit("").above(0).doc("peak value that is allowed, in the unit of the output");
   d.parameter("margin", 0.8).unit("1").range(0.05, 1).doc("part of these limits that is used");

@@ -11,7 +11,8 @@ void describe_base(Describe& d) {
   d.parameter("input", "command")
       .choices({"command", "period_mean", "terminal"})
       .doc(
-          "which voltage the recordings have as input: the command (held over each sample, applied after the computation delay), the "
+          "which voltage the recordings have as input: the command (held over each sample, applied after the computation delay), "
+          "the "
           "mean terminal voltage of each sample period, or the terminal voltage sampled without aliasing");
   d.parameter("computation_delay", 0.0).unit("s").range(0, 1).doc("from the sample of a command to the instant it acts");
 }

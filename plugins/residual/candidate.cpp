@@ -36,8 +36,8 @@ std::string judged(const Candidate& c, const Levels& levels) {
   }
   if (const std::string where = unphysical(*c.effect, c.with.fit); !where.empty()) return "not physical: " + where;
   if (!(c.select_gain > levels.select_gain)) {
-    return "does not help on the record that was not fitted: chi2 falls by " + short_number(c.select_gain, 3) + ", needed above " +
-           short_number(levels.select_gain, 3);
+    return "does not help on the record that was not fitted: chi2 falls by " + short_number(c.select_gain, 3) +
+           ", needed above " + short_number(levels.select_gain, 3);
   }
   return "";
 }

@@ -23,9 +23,9 @@ struct Law {
   double slope = 0.0;
 };
 
-/// Something physical that a base model lacks and that can be added to it. An effect acts through hooks that any base model offers;
-/// hooks of several effects add up, so pairs of effects need no code of their own. Effects are simulated inside the model, they
-/// never see the measured output. Parameters reach the hooks as plain numbers in the order of `parameters`.
+/// Something physical that a base model lacks and that can be added to it. An effect acts through hooks that any base model
+/// offers; hooks of several effects add up, so pairs of effects need no code of their own. Effects are simulated inside the
+/// model, they never see the measured output. Parameters reach the hooks as plain numbers in the order of `parameters`.
 class Effect {
  public:
   virtual ~Effect() = default;
@@ -50,10 +50,12 @@ class Effect {
 
   /// Time by which the output comes late [s].
   virtual double delay_s(const double*) const { return 0.0; }
-  /// What is lost of the effort (voltage, force) at that flow (current, velocity); never falls with the flow.
-  virtual Law effort_lost(const double*, double) const { return {}; }
-  /// What is added to the stored quantity x in the law of the store, flow = (x + extra(x)) / L: magnetising current over flux, force
-  /// over displacement.
+  /// What is lost of the effort (voltage, force) at that flow (current, velocity) over the coming step of the simulation. gain:
+  /// by how much a unit of effort changes the flow in that step; a law that jumps is spread over what it can change itself, so
+  /// that it stops the flow and does not make it chatter.
+  virtual double effort_lost(const double*, double /*flow*/, double /*gain*/) const { return 0.0; }
+  /// What is added to the stored quantity x in the law of the store, flow = (x + extra(x)) / L: magnetising current over flux,
+  /// force over displacement.
   virtual Law extra_stored(const double*, double) const { return {}; }
 };
 

@@ -46,8 +46,7 @@ Expected<std::vector<Eigen::Index>> excited_lines(const records::Recording& reco
                                                   const std::optional<NoiseFloor>& noise, double line_hz) {
   std::vector<Eigen::Index> lines(recording.excited_lines.begin(), recording.excited_lines.end());
   if (lines.empty()) {
-    const Eigen::VectorXd power =
-        (numerics::half_dft(mean_input) / static_cast<double>(mean_input.size())).cwiseAbs2();
+    const Eigen::VectorXd power = (numerics::half_dft(mean_input) / static_cast<double>(mean_input.size())).cwiseAbs2();
     const double least = kRounding * kRounding * power.tail(power.size() - 1).maxCoeff();
     for (Eigen::Index k = 1; k < power.size(); ++k) {
       const double limit = noise ? -std::log(kFalseLine) * noise->at(static_cast<double>(k) * line_hz) : 0.0;
@@ -63,8 +62,8 @@ void set_kinds(const std::vector<Eigen::Index>& excited, Eigen::Index lines, Exp
   e.kind.resize(static_cast<std::size_t>(lines));
   for (std::size_t k = 0; k < e.kind.size(); ++k) e.kind[k] = k == 0 ? Kind::dc : k % 2 == 0 ? Kind::even : Kind::odd;
   for (const Eigen::Index k : excited) e.kind[static_cast<std::size_t>(k)] = Kind::excited;
-  e.frequency_hz = Eigen::VectorXd::LinSpaced(lines, 0.0, static_cast<double>(lines - 1)) * e.sample_rate_hz /
-                   static_cast<double>(e.period);
+  e.frequency_hz =
+      Eigen::VectorXd::LinSpaced(lines, 0.0, static_cast<double>(lines - 1)) * e.sample_rate_hz / static_cast<double>(e.period);
   e.skirt.assign(static_cast<std::size_t>(e.between.size()), false);
   const Eigen::Index gap = e.periods - 1;
   for (const Eigen::Index k : excited) {

@@ -21,7 +21,8 @@ records::ModelData model_of(const Fit& fit, std::span<const Experiment> experime
       m.warnings.push_back("numerator and denominator hold the small-signal part without " + added.effect->name() +
                            "; use the parameters for large signals");
   }
-  if (!fit.converged) m.warnings.push_back("the fit did not converge: the parameters are not the best ones; check what is declared");
+  if (!fit.converged)
+    m.warnings.push_back("the fit did not converge: the parameters are not the best ones; check what is declared");
   const Experiment& first = experiments.front();
   m.input_name = first.input_name;
   m.output_name = first.output_name;

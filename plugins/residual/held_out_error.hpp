@@ -6,10 +6,10 @@ namespace bodeflow::residual {
 
 /// The error of a model on an experiment beside what the noise alone would leave, in the unit of the output.
 struct HeldOutError {
-  double error = 0.0;        ///< root mean square of measured minus predicted mean period, within the band of the lines
-  double floor = 0.0;        ///< expected from the noise alone
-  double highest = 0.0;      ///< the noise alone stays below it with a probability of 99.9 %
-  double lowest = 0.0;       ///< the noise alone falls below it with a probability of 1e-4: less is a leak of the measured output
+  double error = 0.0;    ///< root mean square of measured minus predicted mean period, within the band of the lines
+  double floor = 0.0;    ///< expected from the noise alone
+  double highest = 0.0;  ///< the noise alone stays below it with a probability of 99.9 %
+  double lowest = 0.0;   ///< the noise alone falls below it with a probability of 1e-4: less is a leak of the measured output
   bool at_floor() const { return error <= highest; }
   bool leak() const { return error < lowest; }
   /// What is not noise: sqrt(error^2 - floor^2), 0 below the floor.

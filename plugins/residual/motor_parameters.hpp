@@ -4,8 +4,8 @@
 
 namespace bodeflow::residual {
 
-/// One phase of an induction motor at standstill as a T circuit with Ls = Lr, which the stator alone can't tell from any other split
-/// of the leakage. Equivalent to the transfer function
+/// One phase of an induction motor at standstill as a T circuit with Ls = Lr, which the stator alone can't tell from any other
+/// split of the leakage. Equivalent to the transfer function
 ///   G(s) = (s + alpha)/sigma / (s^2 + s (gamma + alpha) + alpha (gamma - alpha Lm_beta))   (17)
 /// with alpha = Rr/Lr, Lm_beta = Lm^2/(sigma Lr), sigma = Ls - Lm^2/Lr, gamma = Rs/sigma + alpha Lm_beta.
 /// Reference: P. Castaldi, M. Montanari, A. Tilli, Induction motor model identification via frequency-domain Frisch scheme, IFAC

@@ -9,17 +9,10 @@ namespace {
 
 // e-folds of the slower mode that a simulation runs before its period is taken.
 constexpr double kWarmUp = 14.0;
-// Of the current at the end of a step.
-constexpr int kMostNewton = 8;
-constexpr double kSolved = 1e-12;
 
-Law lost(const Extension& extension, double current) {
-  Law sum;
-  for (const AddedEffect& added : extension) {
-    const Law law = added.effect->effort_lost(added.values.data(), current);
-    sum.value += law.value;
-    sum.slope += law.slope;
-  }
+double lost(const Extension& extension, double current, double gain) {
+  double sum = 0.0;
+  for (const AddedEffect& added : extension) sum += added.effect->effort_lost(added.values.data(), current, gain);
   return sum;
 }
 
@@ -34,16 +27,19 @@ class Circuit {
         per_lm_(1.0 / motor.lm),
         extension_(extension) {}
 
-  /// What a step of that length needs.
-  using Step = double;
-  Step prepared(double h) const { return h; }
+  struct Step {
+    double h = 0.0;
+    double gain = 0.0;  ///< of the current by a unit of voltage
+  };
+  Step prepared(double h) const { return {h, 0.5 * h * per_leakage_}; }
   double current() const { return x_.current; }
 
-  void step(Step h, double voltage) {
-    const State k1 = slope(x_, voltage);
-    const State k2 = slope({x_.current + 0.5 * h * k1.current, x_.flux + 0.5 * h * k1.flux}, voltage);
-    const State k3 = slope({x_.current + 0.5 * h * k2.current, x_.flux + 0.5 * h * k2.flux}, voltage);
-    const State k4 = slope({x_.current + h * k3.current, x_.flux + h * k3.flux}, voltage);
+  void step(const Step& s, double voltage) {
+    const double h = s.h, u = voltage - lost(extension_, x_.current, s.gain);
+    const State k1 = slope(x_, u);
+    const State k2 = slope({x_.current + 0.5 * h * k1.current, x_.flux + 0.5 * h * k1.flux}, u);
+    const State k3 = slope({x_.current + 0.5 * h * k2.current, x_.flux + 0.5 * h * k2.flux}, u);
+    const State k4 = slope({x_.current + h * k3.current, x_.flux + h * k3.flux}, u);
     x_.current += h / 6.0 * (k1.current + 2.0 * (k2.current + k3.current) + k4.current);
     x_.flux += h / 6.0 * (k1.flux + 2.0 * (k2.flux + k3.flux) + k4.flux);
   }
@@ -62,7 +58,7 @@ class Circuit {
       extra_slope += law.slope;
     }
     const double magnetising = (x.flux + extra) * per_lm_, inverse = (1.0 + extra_slope) * per_lm_;
-    const double a = voltage - lost(extension_, x.current).value - rs_ * x.current, b = rr_ * (x.current - magnetising);
+    const double a = voltage - rs_ * x.current, b = rr_ * (x.current - magnetising);
     const double flux = (a + b) / (2.0 + leakage_ * inverse);
     return {(a - flux) * per_leakage_, flux};
   }
@@ -72,16 +68,13 @@ class Circuit {
   State x_;
 };
 
-/// The two modes of the linear motor, each moved exactly while the voltage is held. What is lost follows from the current at the end of the
-/// step, so that a loss which stops the current holds it at zero, as a dead time does, and does not make it chatter.
+/// The two modes of the linear motor, each moved exactly while voltage and loss are held.
 class Modes {
  public:
-  Modes(const MotorModes& modes, const Extension& extension)
-      : modes_(modes), extension_(extension), at_zero_(lost(extension, 0.0)) {}
+  Modes(const MotorModes& modes, const Extension& extension) : modes_(modes), extension_(extension) {}
 
   struct Step {
     double decay[2], gain[2];
-    double slow = 1.0;  ///< 1 / (1 + gain lost'(0))
   };
   Step prepared(double h) const {
     Step s;
@@ -89,35 +82,18 @@ class Modes {
       s.decay[i] = std::exp(modes_.pole[i] * h);
       s.gain[i] = modes_.residue[i] * std::expm1(modes_.pole[i] * h) / modes_.pole[i];
     }
-    s.slow = 1.0 / (1.0 + (s.gain[0] + s.gain[1]) * at_zero_.slope);
     return s;
   }
   double current() const { return x_[0] + x_[1]; }
 
   void step(const Step& s, double voltage) {
-    const double gain = s.gain[0] + s.gain[1], free = s.decay[0] * x_[0] + s.decay[1] * x_[1] + gain * voltage;
-    const double u = voltage - loss(free, gain, s.slow);
+    const double u = voltage - lost(extension_, current(), s.gain[0] + s.gain[1]);
     for (int i = 0; i < 2; ++i) x_[i] = s.decay[i] * x_[i] + s.gain[i] * u;
   }
 
  private:
-  /// lost(i) with i = free - gain lost(i), by Newton's method from i = 0, where odd laws that flatten out are steepest.
-  double loss(double free, double gain, double slow) const {
-    if (extension_.empty()) return 0.0;
-    double i = (free - gain * at_zero_.value) * slow;
-    Law law = lost(extension_, i);
-    for (int n = 0; n < kMostNewton; ++n) {
-      const double error = free - gain * law.value - i;
-      if (std::abs(error) <= kSolved * std::abs(free)) break;
-      i += error / (1.0 + gain * law.slope);
-      law = lost(extension_, i);
-    }
-    return law.value;
-  }
-
   MotorModes modes_;
   const Extension& extension_;
-  Law at_zero_;
   double x_[2] = {0.0, 0.0};
 };
 
@@ -177,7 +153,7 @@ Eigen::VectorXd run(Motor motor, const Timing& t, const Eigen::VectorXd& voltage
 }  // namespace
 
 Eigen::VectorXd simulate(const Eigen::Vector4d& parameters, const Timing& t, const Eigen::VectorXd& voltage,
-                     const Extension& extension) {
+                         const Extension& extension) {
   const MotorModes modes = motor_modes(parameters);
   const double period = static_cast<double>(voltage.size()) / t.held_per_sample;
   const double samples = std::clamp(std::ceil(kWarmUp / (-modes.pole[1] * t.sample_time_s)), 1.0, 2.0 * period);

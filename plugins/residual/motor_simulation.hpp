@@ -19,11 +19,12 @@ struct Timing {
 ///
 /// The period is run after as much of it as the slower mode takes to fall to e^-14. Steps end at every change of the input and at
 /// every sample of the current; the delay shifts these instants, so it is exact.
-/// Without an effect that stores, the modes of (17) are moved exactly, the effort lost held over each step at its value for
-/// the current at the end. Otherwise classical Runge-Kutta steps with stator current i and main flux psi as states:
-///   psi' = (a + b) / (2 + l c),  i' = (a - psi') / l,  a = u - lost(i) - Rs i,  b = Rr (i - i_m(psi)),  c = d i_m / d psi.
+/// What is lost is held over each step at its value for the current at the start, as an inverter holds it over a PWM period.
+/// Without an effect that stores, the modes of (17) are moved exactly. Otherwise classical Runge-Kutta steps with stator current
+/// i and main flux psi as states:
+///   psi' = (a + b) / (2 + l c),  i' = (a - psi') / l,  a = u - lost - Rs i,  b = Rr (i - i_m(psi)),  c = d i_m / d psi.
 /// Parameters outside of the domain give values that are not finite. Cost: about 10 or 40 ns a step.
 Eigen::VectorXd simulate(const Eigen::Vector4d& parameters, const Timing& timing, const Eigen::VectorXd& voltage,
-                     const Extension& extension);
+                         const Extension& extension);
 
 }  // namespace bodeflow::residual

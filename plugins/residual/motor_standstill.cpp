@@ -23,8 +23,8 @@ double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(x) / x; }
 /// What a mode r / (s - p) has reached after t with a constant input of 1.
 double charged(double residue, double pole, double t) { return residue * std::expm1(pole * t) / pole; }
 
-/// A band-limited input as kFine held values a sample: those of its spectrum in the middle of each step, divided by the response of
-/// the hold, so that what drives the model has the spectrum of the input.
+/// A band-limited input as kFine held values a sample: those of its spectrum in the middle of each step, divided by the response
+/// of the hold, so that what drives the model has the spectrum of the input.
 Eigen::VectorXd fine_input(const Experiment& e) {
   const Eigen::VectorXcd lines = numerics::half_dft(e.input);
   const Eigen::Index length = e.period * kFine;
@@ -55,8 +55,8 @@ struct Measured {
   std::vector<double> weight;
 };
 
-/// (b1 s + b0) / (s^2 + a1 s + a0) by linear least squares, reweighted with the denominator before (Sanathanan & Koerner, 1963); s in
-/// units of `scale`.
+/// (b1 s + b0) / (s^2 + a1 s + a0) by linear least squares, reweighted with the denominator before (Sanathanan & Koerner, 1963);
+/// s in units of `scale`.
 Eigen::Vector4d linearised_fit(const Measured& m, double scale) {
   const auto lines = static_cast<Eigen::Index>(m.s.size());
   Eigen::MatrixXd a(2 * lines, 4);
@@ -126,9 +126,10 @@ Complex MotorStandstill::response(const Eigen::Vector4d& values, double frequenc
 }
 
 Eigen::VectorXd MotorStandstill::simulate_experiment(const Experiment& e, const Eigen::VectorXd& values,
-                                                 const Extension& extension) const {
+                                                     const Extension& extension) const {
   Timing timing{e.sample_time_s(), held() ? 1 : kFine, declared_delay_s() + delay_s(extension), 1};
-  for (const AddedEffect& added : extension) timing.steps_per_sample = std::max(timing.steps_per_sample, added.effect->steps_per_sample());
+  for (const AddedEffect& added : extension)
+    timing.steps_per_sample = std::max(timing.steps_per_sample, added.effect->steps_per_sample());
   return simulate(values, timing, held() ? e.input : fine_input(e), extension);
 }
 
@@ -170,8 +171,10 @@ Expected<Eigen::VectorXd> MotorStandstill::start(std::span<const Experiment> exp
   const Eigen::Vector4d found(gamma, alpha, lm_beta, sigma);
   if (found.allFinite() && (found.array() > 0.0).all() && x[1] > 0.0) return Eigen::VectorXd(found);
   // A circuit of the band's own scale, with the resistance of the first and the inductance of the last line.
-  const double rs = 0.7 * (1.0 / m.response.front()).real(), last = std::abs((1.0 / m.response.back()).imag()) / m.s.back().imag();
-  if (!(rs > 0.0) || !(last > 0.0)) return refused("the measured response has no positive resistance: check the signs of the signals");
+  const double rs = 0.7 * (1.0 / m.response.front()).real(),
+               last = std::abs((1.0 / m.response.back()).imag()) / m.s.back().imag();
+  if (!(rs > 0.0) || !(last > 0.0))
+    return refused("the measured response has no positive resistance: check the signs of the signals");
   return Eigen::VectorXd(Eigen::Vector4d(rs / last + 0.5 * middle, 0.1 * middle, 5.0, last));
 }
 

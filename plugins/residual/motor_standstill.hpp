@@ -34,7 +34,8 @@ class MotorStandstill final : public BaseModel {
  private:
   bool held() const { return input_ != MotorInput::terminal; }
   double declared_delay_s() const { return input_ == MotorInput::command ? computation_delay_s_ : 0.0; }
-  Eigen::VectorXd simulate_experiment(const Experiment& experiment, const Eigen::VectorXd& values, const Extension& extension) const;
+  Eigen::VectorXd simulate_experiment(const Experiment& experiment, const Eigen::VectorXd& values,
+                                      const Extension& extension) const;
 
   MotorInput input_;
   double computation_delay_s_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+
 #include "expected.hpp"
 
 namespace bodeflow::residual {
@@ -12,8 +13,8 @@ class NoiseFloor {
 
   /// The floor under the powers of bins that hold noise alone (frequencies in Hz, rising).
   ///
-  /// Method: median of the powers in up to 12 bands, over ln 2, which tones and the skirts of strong lines hardly move; a parabola
-  /// over frequency through the logarithms of these levels. In logarithms the level of a band of n bins has the variance
+  /// Method: median of the powers in up to 12 bands, over ln 2, which tones and the skirts of strong lines hardly move; a
+  /// parabola over frequency through the logarithms of these levels. In logarithms the level of a band of n bins has the variance
   /// 1 / (n ln^2 2), that of the median of an exponential distribution.
   /// Noise that is coloured so strongly that a parabola does not follow it is not described.
   /// Errors: fewer than 60 bins; powers that are not above 0 in most bins.
@@ -23,8 +24,8 @@ class NoiseFloor {
   double at(double frequency_hz) const;
   Eigen::VectorXd at(const Eigen::VectorXd& frequency_hz) const;
 
-  /// The variance of the relative error of the floor's mean over these frequencies; with nu = 2 / variance it counts as nu degrees of
-  /// freedom. 0 without frequencies.
+  /// The variance of the relative error of the floor's mean over these frequencies; with nu = 2 / variance it counts as nu
+  /// degrees of freedom. 0 without frequencies.
   double relative_variance(const Eigen::VectorXd& frequency_hz) const;
 
  private:

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <string>
 
-
 namespace bodeflow::residual {
 
 /// A physical parameter of a base model or an effect, with the values that physics allows.

@@ -66,7 +66,8 @@ std::vector<ClassTest> test_classes(const Experiment& e, const Prediction& p, co
   const auto keep = [&tests](std::optional<ClassTest> test) {
     if (test) tests.push_back(std::move(*test));
   };
-  for (const auto& [kind, name] : {std::pair{Kind::excited, "excited"}, {Kind::odd, "odd"}, {Kind::even, "even"}, {Kind::dc, "dc"}}) {
+  for (const auto& [kind, name] :
+       {std::pair{Kind::excited, "excited"}, {Kind::odd, "odd"}, {Kind::even, "even"}, {Kind::dc, "dc"}}) {
     std::vector<Eigen::Index> lines;
     for (Eigen::Index k = 0; k < e.lines(); ++k)
       if (e.kind[static_cast<std::size_t>(k)] == kind) lines.push_back(k);

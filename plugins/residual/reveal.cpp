@@ -33,7 +33,8 @@ bool is_right(const Answer& a, const std::string& hidden) {
 std::string comparison(const Answer& a, const std::string& hidden, double size, const std::string& unit) {
   const std::string truth =
       hidden == "none" ? "nothing" : hidden + " (" + records::short_number(size, 4) + (unit == "1" ? "" : " " + unit) + ")";
-  return std::string(is_right(a, hidden) ? "Right" : "Wrong") + ": the bench hid " + truth + "; the trace said that " + said(a) + ".";
+  return std::string(is_right(a, hidden) ? "Right" : "Wrong") + ": the bench hid " + truth + "; the trace said that " + said(a) +
+         ".";
 }
 
 Eigen::Vector4d motor_truth(double rs, double rr, double ls, double lr, double lm) {

@@ -14,9 +14,9 @@ struct Answer {
   std::vector<std::string> candidates;  ///< what was in the catalogue
 };
 
-/// Whether the answer is right about a bench that hides that effect ("none": nothing): none for nothing; an effect of the catalogue
-/// named alone, or declared not separable with it among those that can't be told apart; unexplained for one outside of the
-/// catalogue, or its declared equivalent.
+/// Whether the answer is right about a bench that hides that effect ("none": nothing): none for nothing; an effect of the
+/// catalogue named alone, or declared not separable with it among those that can't be told apart; unexplained for one outside of
+/// the catalogue, or its declared equivalent.
 bool is_right(const Answer& answer, const std::string& hidden);
 
 /// The verdict beside the truth in one sentence.

@@ -34,9 +34,12 @@ void put(RecordBuilder& r, const char* name, const std::vector<double>& values) 
 void Reveal::describe(Describe& d) {
   d.id("residual.reveal").summary("Holds the verdict of a trace against the truth of a bench that hid something.");
   d.doc(
-      "To be run in a phase after the trace, so that the verdict stands before the truth is opened. Right is: none where nothing was "
-      "hidden; the effect named, or declared not separable with it among those that can't be told apart; unexplained for an effect "
-      "that the tracer does not know. Where the truth has rs, rr, ls, lr, lm, the true gamma, alpha, Lm_beta, sigma stand beside the "
+      "To be run in a phase after the trace, so that the verdict stands before the truth is opened. Right is: none where nothing "
+      "was "
+      "hidden; the effect named, or declared not separable with it among those that can't be told apart; unexplained for an "
+      "effect "
+      "that the tracer does not know. Where the truth has rs, rr, ls, lr, lm, the true gamma, alpha, Lm_beta, sigma stand beside "
+      "the "
       "fitted ones.");
   d.message_in(trace).record_type("trace");
   d.message_in(truth).record_type("bench_properties").doc("effect, size, unit");

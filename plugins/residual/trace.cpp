@@ -20,15 +20,16 @@ Expected<void> check(const TraceData& data) {
                      first.name + "' " + records::short_number(first.sample_rate_hz) + "; allowed: the same");
     }
     if (e->input_unit != first.input_unit || e->output_unit != first.output_unit) {
-      return refused("record '" + e->name + "' is in " + e->input_unit + " and " + e->output_unit + ", record '" + first.name + "' in " +
-                     first.input_unit + " and " + first.output_unit + "; allowed: the same");
+      return refused("record '" + e->name + "' is in " + e->input_unit + " and " + e->output_unit + ", record '" + first.name +
+                     "' in " + first.input_unit + " and " + first.output_unit + "; allowed: the same");
     }
   }
   if (data.select.checksum == data.test.checksum) return refused("the records 'select' and 'test' hold the same samples");
   for (const Experiment& e : data.fit) {
     for (const Experiment* held : {&data.select, &data.test}) {
       if (e.checksum == held->checksum)
-        return refused("the records '" + e.name + "' and '" + held->name + "' hold the same samples; one of them must not be fitted");
+        return refused("the records '" + e.name + "' and '" + held->name +
+                       "' hold the same samples; one of them must not be fitted");
     }
   }
   return {};
@@ -54,7 +55,8 @@ void compare_with_best(Trace& t) {
     const double z = distinction(best.with, other.with);
     if (z < limit) {
       t.equivalents.push_back(other.name);
-      other.reason = "explains it as well as " + best.name + " does (" + records::short_number(z, 2) + " standard deviations apart)";
+      other.reason =
+          "explains it as well as " + best.name + " does (" + records::short_number(z, 2) + " standard deviations apart)";
       if (t.separation.empty()) t.separation = "measure at one more level, and over a wider band";
     } else {
       other.reason = "explains less than " + best.name + ": " + records::short_number(z, 2) + " standard deviations apart";

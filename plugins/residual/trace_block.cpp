@@ -32,14 +32,20 @@ std::string names_of_effects() {
 }  // namespace
 
 void TraceBlock::describe(Describe& d) {
-  d.id("residual.trace").summary("Names the physical effect that a declared model lacks, adds it, and tells the error before and after.");
+  d.id("residual.trace")
+      .summary("Names the physical effect that a declared model lacks, adds it, and tells the error before and after.");
   d.doc(
-      "Periodic recordings of one input and one output. The base model is fitted to the records at `fit` (two or more, of different "
-      "level and phases) by maximum likelihood, its residual is tested by class of lines against the noise between the lines, and every "
-      "effect is fitted jointly with the base parameters. The record at `select` ranks them, the one at `test` is used once for the "
-      "errors. The verdict is none, named, not_separable or unexplained; an effect outside of the catalogue that acts like one in it "
+      "Periodic recordings of one input and one output. The base model is fitted to the records at `fit` (two or more, of "
+      "different "
+      "level and phases) by maximum likelihood, its residual is tested by class of lines against the noise between the lines, "
+      "and every "
+      "effect is fitted jointly with the base parameters. The record at `select` ranks them, the one at `test` is used once for "
+      "the "
+      "errors. The verdict is none, named, not_separable or unexplained; an effect outside of the catalogue that acts like one "
+      "in it "
       "takes its name.");
-  d.reference("R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., 2012, chapters 4, 9 and 11");
+  d.reference(
+      "R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed., 2012, chapters 4, 9 and 11");
   d.reference("Q. H. Vuong, Likelihood ratio tests for model selection and non-nested hypotheses, 1989, doi:10.2307/1912557");
   describe_base(d);
   d.parameter("effects", std::vector<std::string>{}).doc("those to try; all where none is given: " + names_of_effects());

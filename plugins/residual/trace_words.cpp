@@ -65,8 +65,8 @@ std::string finding(const Trace& t, const std::string& unit) {
     case Verdict::named:
       return "Missing effect: " + cause(t) + ". " + errors(t, unit);
     case Verdict::not_separable:
-      return "Missing effect: " + cause(t) + ", or, not to be told apart with these data, " + joined(t.equivalents, " or ") + ". " +
-             errors(t, unit);
+      return "Missing effect: " + cause(t) + ", or, not to be told apart with these data, " + joined(t.equivalents, " or ") +
+             ". " + errors(t, unit);
     case Verdict::unexplained:
       break;
   }
@@ -76,8 +76,8 @@ std::string finding(const Trace& t, const std::string& unit) {
            errors(t, unit);
   }
   const std::string rest = remainder(t);
-  return "Something is missing that none of the known effects explains" + (rest.empty() ? "" : " (" + rest + ")") + ". " + nearest(t) +
-         " " + errors(t, unit);
+  return "Something is missing that none of the known effects explains" + (rest.empty() ? "" : " (" + rest + ")") + ". " +
+         nearest(t) + " " + errors(t, unit);
 }
 
 std::vector<std::string> warnings(const Trace& t) {
@@ -89,7 +89,8 @@ std::vector<std::string> warnings(const Trace& t) {
     texts.push_back("the error on the test record is above what noise leaves: " + t.candidates[*t.found].name +
                     " is not all that is missing, or its law differs from the one assumed; look at the residual by class");
   }
-  if (!t.separation.empty() && t.verdict == Verdict::not_separable) texts.push_back("to tell the equivalents apart, " + t.separation);
+  if (!t.separation.empty() && t.verdict == Verdict::not_separable)
+    texts.push_back("to tell the equivalents apart, " + t.separation);
   return texts;
 }
 

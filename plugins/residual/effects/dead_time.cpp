@@ -1,6 +1,6 @@
 #include "dead_time.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 #include "records/signals.hpp"
 
@@ -19,9 +19,8 @@ std::string DeadTime::sentence(const Eigen::VectorXd& value, const Eigen::Vector
          ") lost against the current";
 }
 
-Law DeadTime::effort_lost(const double* p, double current) const {
-  if (std::abs(current) < p[1]) return {p[0] * current / p[1], p[0] / p[1]};
-  return {std::copysign(p[0], current), 0.0};
+double DeadTime::effort_lost(const double* p, double current, double gain) const {
+  return p[0] * std::clamp(current / (p[1] + gain * p[0]), -1.0, 1.0);
 }
 
 }  // namespace bodeflow::residual

@@ -4,10 +4,10 @@
 
 namespace bodeflow::residual {
 
-/// A time by which the output comes late beyond what is declared: y(t - d), exact for any d (Jury's modified z-transform where the
-/// input is held). Linear. In an induction motor at standstill it can't be told from a rotor resistance that grows with the square of
-/// frequency: with s = j omega both move the impedance, times (s + alpha)^2, within the polynomials of degree 4 that the base
-/// parameters and that law span.
+/// A time by which the output comes late beyond what is declared: y(t - d), exact for any d (Jury's modified z-transform where
+/// the input is held). Linear. In an induction motor at standstill it can't be told from a rotor resistance that grows with the
+/// square of frequency: with s = j omega both move the impedance, times (s + alpha)^2, within the polynomials of degree 4 that
+/// the base parameters and that law span.
 class Delay final : public Effect {
  public:
   std::string name() const override { return "delay"; }

@@ -8,7 +8,8 @@ namespace bodeflow::residual {
 
 std::vector<Parameter> Saturation::parameters() const {
   constexpr double kNoBound = std::numeric_limits<double>::infinity();
-  return {{"saturation_cubic", "1/(V s)^2", 0.0, kNoBound, false, 1.0}, {"saturation_bend", "1/(V s)^2", -kNoBound, kNoBound, false, 1.0}};
+  return {{"saturation_cubic", "1/(V s)^2", 0.0, kNoBound, false, 1.0},
+          {"saturation_bend", "1/(V s)^2", -kNoBound, kNoBound, false, 1.0}};
 }
 
 std::vector<Eigen::VectorXd> Saturation::starts(const Scales& scales) const {

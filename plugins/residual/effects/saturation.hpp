@@ -4,8 +4,9 @@
 
 namespace bodeflow::residual {
 
-/// Saturation of the main flux: the magnetising current is i = psi (1 + a psi^2 / (1 + c psi^2)) / Lm: linear for small flux, then with a
-/// third power, which c > 0 bends down to the incremental inductance Lm c / (a + c) far beyond the knee, and c < 0 bends up.
+/// Saturation of the main flux: the magnetising current is i = psi (1 + a psi^2 / (1 + c psi^2)) / Lm: linear for small flux,
+/// then with a third power, which c > 0 bends down to the incremental inductance Lm c / (a + c) far beyond the knee, and c < 0
+/// bends up.
 class Saturation final : public Effect {
  public:
   std::string name() const override { return "saturation"; }

@@ -11,6 +11,7 @@
 #include "console/console.hpp"
 #include "console/model_summary.hpp"
 #include "console/record_values.hpp"
+#include "console/trace_summary.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -165,6 +166,9 @@ void print_record(const std::string& name, const Json& record) {
   if (type == "model" && print_model(record)) return;
   if (type == "comparison" && print_comparison(record)) return;
   if (type == "monte_carlo" && print_monte_carlo(record)) return;
+  if (type == "trace" && print_trace(record)) return;
+  if (type == "reveal" && print_reveal(record)) return;
+  if (type == "parameter_change" && print_amplitude(record)) return;
   print_other(record);
 }
 

@@ -1,0 +1,153 @@
+#include "console/trace_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "console/console.hpp"
+#include "console/record_values.hpp"
+
+namespace bodeflow::tools {
+namespace {
+
+constexpr std::size_t kScreen = 110;  ///< characters of a line
+constexpr int kName = 28;
+
+std::string cell(double value, int width = 12, int digits = 5) {
+  return std::isfinite(value) ? fmt::format("{:>{}.{}g}", value, width, digits) : fmt::format("{:>{}}", "-", width);
+}
+
+std::string named(const std::string& name, const std::string& unit) {
+  return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
+}
+
+/// Prints words up to the end of the screen, further lines indented alike.
+void print_wrapped(const std::string& text, std::size_t indent) {
+  std::string line(indent, ' ');
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find(' ', from), text.size());
+    if (line.size() > indent && line.size() + 1 + end - from > kScreen) {
+      fmt::print("{}\n", line);
+      line.assign(indent, ' ');
+    }
+    if (line.size() > indent) line += ' ';
+    line += text.substr(from, end - from);
+    from = end + 1;
+  }
+  fmt::print("{}\n", line);
+}
+
+void print_records(const Json& record) {
+  const Values levels = values(record, "record_levels");
+  std::string list;
+  for (std::size_t i = 0; i < levels.data.size(); ++i)
+    list +=
+        fmt::format("{}{} {:.3g} {}", i == 0 ? "" : ", ", text_at(attribute(record, "records"), i), levels.at(i), levels.unit);
+  if (list.empty()) return;
+  print_wrapped(
+      fmt::format("measured: {} from {}, {} periods each, noise {:.3g} {}; input rms: {}", text(attribute(record, "output_name")),
+                  text(attribute(record, "input_name")), attribute(record, "periods").dump(),
+                  number(attribute(record, "noise_std")), text(attribute(record, "unit")), list),
+      2);
+}
+
+void print_errors(const Json& record) {
+  fmt::print("  {}\n", dim(fmt::format("{:<{}} {:>12} {:>12} {:>12} {:>12}", "error", kName, "before", "after", "noise alone",
+                                       "99.9 % below")));
+  fmt::print("  {:<{}} {} {} {} {}\n", named("on the test record", text(attribute(record, "unit"))), kName,
+             cell(number(attribute(record, "error_before"))), cell(number(attribute(record, "error_after"))),
+             cell(number(attribute(record, "noise_floor"))), cell(number(attribute(record, "noise_floor_99.9"))));
+}
+
+void print_parameters(const Json& record) {
+  const Values before = values(record, "parameters_before"), after = values(record, "parameters_after"),
+               std = values(record, "parameters_after_std"), own = values(record, "effect_parameters"),
+               own_std = values(record, "effect_parameter_std");
+  if (before.empty()) return;
+  fmt::print("  {}\n", dim(fmt::format("{:<{}} {:>12} {:>12} {:>12}", "parameter", kName, "before", "after", "std")));
+  for (std::size_t i = 0; i < before.data.size(); ++i) {
+    fmt::print("  {:<{}} {} {} {}\n",
+               named(text_at(attribute(record, "parameter_names"), i), text_at(attribute(record, "parameter_units"), i)), kName,
+               cell(before.at(i)), cell(after.at(i)), cell(std.at(i), 12, 2));
+  }
+  for (std::size_t i = 0; i < own.data.size(); ++i) {
+    fmt::print(
+        "  {:<{}} {} {} {}\n",
+        named(text_at(attribute(record, "effect_parameter_names"), i), text_at(attribute(record, "effect_parameter_units"), i)),
+        kName, cell(std::nan("")), cell(own.at(i)), cell(own_std.at(i), 12, 2));
+  }
+}
+
+/// What is left of each class on the record that was not fitted, in multiples of the noise.
+void print_classes(const Json& record) {
+  const Json &names = attribute(record, "class_names"), &records = attribute(record, "class_records");
+  const Values before = values(record, "class_before"), after = values(record, "class_after");
+  if (!names.is_array() || !records.is_array() || records.empty() || before.shape != std::vector{records.size(), names.size()} ||
+      after.shape != before.shape)
+    return;
+  std::string head = fmt::format("{:<{}}", "left, times the noise", kName), first, second;
+  const std::size_t row = records.size() - 1;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    head += fmt::format(" {:>9}", text_at(names, c));
+    first += " " + cell(before.at(row, c), 9, 3);
+    second += " " + cell(after.at(row, c), 9, 3);
+  }
+  const std::string name = text_at(records, row);
+  fmt::print("  {}\n  {:<{}}{}\n  {:<{}}{}\n", dim(head), name + ", before", kName, first, name + ", after", kName, second);
+}
+
+void print_candidates(const Json& record) {
+  const Json &names = attribute(record, "candidate_names"), &reasons = attribute(record, "candidate_reasons");
+  const Values share = values(record, "candidate_share");
+  if (!names.is_array()) return;
+  fmt::print("  {}\n", dim(fmt::format("{:<{}} {}", "candidate", kName, "explains")));
+  for (std::size_t i = 0; i < names.size(); ++i)
+    fmt::print("  {:<{}} {:>5.1f} %  {}\n", text_at(names, i), kName, 100.0 * share.at(i), text_at(reasons, i));
+}
+
+}  // namespace
+
+bool print_trace(const Json& record) {
+  const std::string finding = text(attribute(record, "finding"));
+  if (finding.empty()) return false;
+  print_records(record);
+  fmt::print("\n");
+  print_wrapped(finding, 2);
+  fmt::print("\n");
+  print_errors(record);
+  print_parameters(record);
+  print_classes(record);
+  print_candidates(record);
+  return true;
+}
+
+bool print_reveal(const Json& record) {
+  const std::string sentence = text(attribute(record, "sentence"));
+  if (sentence.empty()) return false;
+  print_wrapped(sentence, 2);
+  const Values before = values(record, "parameters_before"), after = values(record, "parameters_after"),
+               truth = values(record, "parameters_true");
+  if (truth.empty()) return true;
+  fmt::print("  {}\n", dim(fmt::format("{:<{}} {:>12} {:>12} {:>12}", "parameter", kName, "before", "after", "truth")));
+  for (std::size_t i = 0; i < truth.data.size(); ++i) {
+    fmt::print("  {:<{}} {} {} {}\n",
+               named(text_at(attribute(record, "parameter_names"), i), text_at(attribute(record, "parameter_units"), i)), kName,
+               cell(before.at(i)), cell(after.at(i)), cell(truth.at(i)));
+  }
+  return true;
+}
+
+bool print_amplitude(const Json& record) {
+  const std::string limit = text(attribute(record, "limited_by"));
+  if (limit.empty()) return false;
+  const double signal = number(attribute(record, "signal_to_noise_db"));
+  print_wrapped(
+      fmt::format("{} = {:.4g}, {:.3g} times the pilot's, set by {}; in the pilot the output was {:.1f} dB above the noise of "
+                  "{:.3g}, its peak {:.3g}",
+                  text(attribute(record, "parameter")), number(attribute(record, "value")), number(attribute(record, "factor")),
+                  limit, signal, number(attribute(record, "noise_std")), number(attribute(record, "output_peak"))),
+      2);
+  return true;
+}
+
+}  // namespace bodeflow::tools

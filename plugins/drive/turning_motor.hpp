@@ -15,8 +15,8 @@ namespace bodeflow::drive {
 /// value of the curve: M = y leakage^-1 magnetises = i_m + (magnetises . leakage^-1 magnetises) psi(i_m). With iron loss its
 /// own loop has no leakage and its linkage is -psi itself.
 ///
-/// An interval is split such that (largest decay rate + |omega|) times the step stays below 1/2: there the relative error of a
-/// step is below 3e-4 for what decays at that rate and below 1e-9 for what the terminals see.
+/// An interval is split such that (largest decay rate + |omega|) times the step stays below 1/4. At standstill the currents
+/// then agree with the exact solution to 1e-10 of the largest without hidden loops, and to 2e-7 with bars and iron loss.
 template <int kLoops>
 class TurningMotor final : public Motor {
  public:

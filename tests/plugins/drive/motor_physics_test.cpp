@@ -141,6 +141,25 @@ TEST_CASE("motor: at 0 Hz hidden bars and iron loss change neither resistance no
   CHECK(std::abs(impedance(plain, omega) - impedance(real, omega)) < 1e-6 * std::abs(impedance(plain, omega)));
 }
 
+TEST_CASE("motor: Runge-Kutta steps between the edges of a switching inverter agree with the exact solution") {
+  const double cases[][3] = {{0, 0, 1e-10}, {0.012, 0, 2e-7}, {0, 800, 2e-7}, {0.012, 800, 2e-7}};  // bars, iron, error
+  for (const auto& [bars, iron, allowed] : cases) {
+    const auto exact = motor_of(hidden(0, bars, iron), {}, 1e-4);
+    const auto stepped = motor_of(hidden(1e7, bars, iron), {}, 1e-4);  // a curve that does not bend
+    double worst = 0.0, largest = 0.0;
+    for (int n = 0; n < 5000; ++n) {
+      const Switching s = switching({}, {120 * std::cos(0.03 * n), 120 * std::sin(0.02 * n)}, {}, {});
+      exact->advance(s.legs, 540.0, 0.0);
+      stepped->advance(s.legs, 540.0, 0.0);
+      const AlphaBeta a = exact->outputs().current, b = stepped->outputs().current;
+      worst = std::max(worst, std::hypot(a.alpha - b.alpha, a.beta - b.beta));
+      largest = std::max(largest, std::hypot(a.alpha, a.beta));
+    }
+    INFO("bars " << bars << " m, iron " << iron << " ohm: " << worst << " of " << largest);
+    CHECK(worst < allowed * largest);
+  }
+}
+
 TEST_CASE("motor: a direct current magnetises along the saturation law, in any direction") {
   const double isat = 1.2, current = 3.0;
   const auto motor = motor_of(hidden(isat, 0, 0), {}, 1e-4);

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <set>
+#include <span>
 
 #include "record/files.hpp"
 #include "report/front.hpp"
@@ -25,9 +26,11 @@ std::string kind_of(const std::string& type) {
                                                          {"monte_carlo", "Monte Carlo"},
                                                          {"controller", "controller"},
                                                          {"trace", "residual trace"},
+                                                         {"reveal", "verdict and truth"},
                                                          {"sweep", "sweep"},
                                                          {"comparison", "comparison of models"},
                                                          {"order_scan", "order scan"},
+                                                         {"noise_variances", "noise variances"},
                                                          {"whiteness", "whiteness of the residual"},
                                                          {"residual", "residual"},
                                                          {"delay_estimate", "delay"}};
@@ -35,32 +38,54 @@ std::string kind_of(const std::string& type) {
   return found == kKinds.end() ? type : found->second;
 }
 
-bool add_by_type(Page& page, const Record& record, const std::vector<Response>& responses) {
+bool add_by_type(Page& page, const Record& record, std::span<const Response> responses) {
   if (record.type == "frequency_response") return add_frequency_response(page, record);
   if (record.type == "spectral_levels") return add_spectral_levels(page, record);
   if (record.type == "spectral_matrix") return add_spectral_matrix(page, record);
   if (record.type == "model") return add_model(page, record, responses);
   if (record.type == "monte_carlo") return add_monte_carlo(page, record);
+  if (record.type == "noise_variances") return add_noise_variances(page, record);
   if (record.type == "comparison") return add_comparison(page, record);
   if (record.type == "order_scan") return add_order_scan(page, record);
   if (record.type == "whiteness") return add_whiteness(page, record);
   if (record.type == "residual") return add_residual(page, record);
   if (record.type == "controller") return add_controller(page, record);
   if (record.type == "trace") return add_trace(page, record);
+  if (record.type == "reveal") return add_reveal(page, record);
   if (record.type == "sweep") return add_sweep(page, record);
   if (record.type == "delay_estimate") return add_delay_estimate(page, record), true;
   return false;
 }
 
+/// The records' places: those that the graph wants shown first, in its order, then the others as they came.
+std::vector<std::size_t> order_of(const RunData& run) {
+  std::vector<std::size_t> order;
+  std::vector<bool> taken(run.records.size(), false);
+  for (const auto& name : read_shown(run.graph_text))
+    for (std::size_t n = 0; n < run.records.size(); ++n) {
+      if (run.records[n].key != name || taken[n]) continue;
+      taken[n] = true;
+      order.push_back(n);
+    }
+  for (std::size_t n = 0; n < run.records.size(); ++n)
+    if (!taken[n]) order.push_back(n);
+  return order;
+}
+
 void add_records(Page& page, const RunData& run) {
   std::vector<Response> responses;
-  std::set<std::string> told;  // several outputs of a block often carry the same warning
+  std::vector<std::size_t> before;  // responses that came before each record
   for (const auto& record : run.records) {
+    before.push_back(responses.size());
+    if (auto response = read_response(record)) responses.push_back(std::move(*response));
+  }
+  std::set<std::string> told;  // several outputs of a block often carry the same warning
+  for (const std::size_t n : order_of(run)) {
+    const Record& record = run.records[n];
     page.open_section(record.key, kind_of(record.type));
     for (const auto& warning : record.texts("warnings"))
       if (told.insert(warning).second) page.note(warning);
-    if (!add_by_type(page, record, responses)) add_any(page, record);
-    if (auto response = read_response(record)) responses.push_back(std::move(*response));
+    if (!add_by_type(page, record, {responses.data(), before[n]})) add_any(page, record);
     page.close_section();
   }
   if (run.records.empty()) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "report/page.hpp"
 #include "report/record.hpp"
 #include "report/response.hpp"
@@ -12,8 +14,10 @@ bool add_frequency_response(Page& page, const Record& record);
 bool add_spectral_levels(Page& page, const Record& record);
 bool add_spectral_matrix(Page& page, const Record& record);
 /// `responses`: all of the run, for the comparison with data.
-bool add_model(Page& page, const Record& record, const std::vector<Response>& responses);
+bool add_model(Page& page, const Record& record, std::span<const Response> responses);
 bool add_monte_carlo(Page& page, const Record& record);
+/// Noise of input and output by band, and the curves of the Frisch scheme.
+bool add_noise_variances(Page& page, const Record& record);
 /// Fits, signals, correlations, parameters and responses of models side by side.
 bool add_comparison(Page& page, const Record& record);
 bool add_order_scan(Page& page, const Record& record);
@@ -23,6 +27,7 @@ bool add_whiteness(Page& page, const Record& record);
 bool add_residual(Page& page, const Record& record);
 bool add_controller(Page& page, const Record& record);
 bool add_trace(Page& page, const Record& record);
+bool add_reveal(Page& page, const Record& record);
 bool add_sweep(Page& page, const Record& record);
 
 /// The responses of a sweep's runs over each other, where its records were frequency responses.

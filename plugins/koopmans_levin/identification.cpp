@@ -136,7 +136,6 @@ Expected<Identification> identify(const Samples& input, const Samples& output, c
   found.ratio_source = chosen->source;
   found.estimate = std::move(chosen->estimate);
   found.scan = std::move(chosen->scan);
-  found.settled = chosen->settled;
   const auto done = settings->refine && !found.noise_free ? refine(*solution, *f, found) : take(*solution, *f, found);
   if (!done) return tl::make_unexpected(done.error());
   test_whiteness(found);

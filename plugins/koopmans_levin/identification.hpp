@@ -50,7 +50,6 @@ struct Identification {
   RatioSource ratio_source = RatioSource::declared;
   std::optional<RatioEstimate> estimate;        ///< where the ratio was not declared, determined or not
   std::optional<OrderScan> scan;                ///< where the order was not given
-  bool settled = true;                          ///< false: scan and ratio estimate do not agree on an order
   std::optional<RatioSensitivity> sensitivity;  ///< where the ratio is not estimated and a covariance is known
   std::optional<Whiteness> whiteness;           ///< where there are lines enough and noise
   std::optional<std::string> refinement;        ///< why the search for the maximum ended without converging
@@ -58,8 +57,7 @@ struct Identification {
 
 /// The model of two records, by the methods of this folder in their order: lines, order, ratio, solution, refinement, checks.
 ///
-/// Without order and ratio both are sought in turn: a scan at the ratio mean |Y|^2 / mean |U|^2, the ratio at the order found, a
-/// scan at that ratio, until the order stays. Refined with an estimated ratio, the covariance adds what one standard deviation
+/// Refined with an estimated ratio, the covariance adds what one standard deviation
 /// of ln(ratio) moves the refined model by.
 /// Errors: those of the methods; a ratio that is not determined, without a fallback; time domain with a band or without
 /// transient; refinement without transient.

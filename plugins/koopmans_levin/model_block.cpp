@@ -60,7 +60,7 @@ void ModelBlock::describe(Describe& d) {
       "A(z^-1) y = B(z^-1) u from any input, periodic or not: the ends of the record are part of the model. The ratio of output "
       "to input noise variance must be known, measured or estimated; where the data do not determine it, the block says so and "
       "gives no model, unless `fallback_ratio` is given (attribute ratio_determined). All samples are collected, 16 bytes each, "
-      "and about 150 bytes each at the end; `max_samples` limits them. Biased by coloured noise, by noise common to both "
+      "about 70 bytes each at the end; `max_samples` limits them. Biased by coloured noise, by noise common to both "
       "signals, by a wrong ratio; a model of too low an order fits what is strong.");
   d.reference(
       "U. Soverini, G. Catania, FRF parameter identification with arbitrary input sequence from noisy input-output measurements");

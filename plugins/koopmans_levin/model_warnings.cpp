@@ -44,7 +44,6 @@ void warn_of_ratio(const Identification& found, Texts& warnings) {
 }
 
 void warn_of_order(const Identification& found, Texts& warnings) {
-  if (!found.settled) warnings.push_back("order and noise ratio, estimated in turn, do not settle: give one of them");
   if (!found.scan || found.scan->chosen > 0) return;
   warnings.push_back("no order was found: the noise still falls at order " + std::to_string(found.model.order()) +
                      ", the highest tried; raise highest_order, narrow the band, or give the order (see order_scan)");

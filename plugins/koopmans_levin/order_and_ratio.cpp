@@ -7,7 +7,7 @@ namespace bodeflow::koopmans_levin {
 
 namespace {
 
-constexpr int kMostRounds = 5;
+constexpr double kDeviations = 2.0;  // of ln(ratio), within which an order may be found
 
 RatioSource source_of(const Settings& s) {
   if (s.ratio) return RatioSource::declared;
@@ -49,6 +49,48 @@ Expected<OrderAndRatio> fall_back(const Lines& lines, const Settings& s, OrderAn
   return found;
 }
 
+Expected<OrderAndRatio> ratio_of_order(const Lines& lines, const Settings& s, OrderAndRatio found) {
+  auto estimate = estimate_ratio(lines, s, found.order);
+  if (!estimate) return tl::make_unexpected(estimate.error());
+  found.estimate = std::move(*estimate);
+  if (!found.estimate->determined) return fall_back(lines, s, std::move(found));
+  found.ratio = found.estimate->ratio;
+  return found;
+}
+
+/// Whether a scan finds `order`, or one below it, at the ratio estimated or within its uncertainty. The scan at the ratio stays.
+Expected<bool> confirmed(const Lines& lines, const Settings& s, Eigen::Index order, OrderAndRatio& found) {
+  const double spread = std::exp(kDeviations * found.estimate->log_ratio_std);
+  bool any = false;
+  for (const double factor : {1.0 / spread, spread, 1.0}) {
+    if (auto done = scan_at(lines, s, found.estimate->ratio * factor, found); !done) return tl::make_unexpected(done.error());
+    any = any || (found.scan->chosen > 0 && found.scan->chosen <= order);
+  }
+  return any;
+}
+
+/// Both sought: the lowest order that the scan at its own ratio confirms. Without one, the highest that has a ratio.
+Expected<OrderAndRatio> both(const Lines& lines, const Settings& s, OrderAndRatio found) {
+  std::optional<OrderAndRatio> last;
+  for (Eigen::Index order = 1; order <= highest_possible(lines, s); ++order) {
+    auto estimate = estimate_ratio(lines, s, order);
+    if (!estimate && order > 1) break;  // data without noise leave more than one model above their order
+    if (!estimate) return tl::make_unexpected(estimate.error());
+    found.estimate = std::move(*estimate);
+    if (!found.estimate->determined) continue;
+    found.ratio = found.estimate->ratio;
+    const auto right = confirmed(lines, s, order, found);
+    if (!right) return tl::make_unexpected(right.error());
+    found.order = order;
+    found.scan->chosen = *right ? order : 0;
+    if (*right) return found;
+    last = found;
+  }
+  if (last) return *last;
+  if (!found.estimate) return refused("the lines do not allow a model of order 1");
+  return fall_back(lines, s, std::move(found));
+}
+
 }  // namespace
 
 std::string name_of(RatioSource source) {
@@ -70,24 +112,12 @@ std::string name_of(RatioSource source) {
 Expected<OrderAndRatio> order_and_ratio(const Lines& lines, const Settings& s) {
   OrderAndRatio found;
   found.source = source_of(s);
+  if (!s.ratio && !s.order) return both(lines, s, std::move(found));
   found.order = s.order.value_or(0);
-  found.ratio = s.ratio.value_or(lines.weight.dot(lines.output.cwiseAbs2()) / lines.weight.dot(lines.input.cwiseAbs2()));
-  Eigen::Index before = -1;
-  for (int round = 0; round < kMostRounds; ++round) {
-    if (!s.order) {
-      if (auto done = scan_at(lines, s, found.ratio, found); !done) return tl::make_unexpected(done.error());
-    }
-    if (s.ratio || found.order == before) return found;
-    auto estimate = estimate_ratio(lines, s, found.order);
-    if (!estimate) return tl::make_unexpected(estimate.error());
-    found.estimate = std::move(*estimate);
-    if (!found.estimate->determined) return fall_back(lines, s, std::move(found));
-    found.ratio = found.estimate->ratio;
-    if (s.order) return found;
-    before = found.order;
-  }
-  found.settled = false;
-  found.order = before;
+  if (!s.ratio) return ratio_of_order(lines, s, std::move(found));
+  found.ratio = *s.ratio;
+  if (s.order) return found;
+  if (auto done = scan_at(lines, s, found.ratio, found); !done) return tl::make_unexpected(done.error());
   return found;
 }
 

@@ -11,11 +11,12 @@ struct OrderAndRatio {
   RatioSource source = RatioSource::declared;
   std::optional<RatioEstimate> estimate;
   std::optional<OrderScan> scan;
-  bool settled = true;
 };
 
-/// What the settings say, or what the lines tell. The output noise of a noise band stands in the settings as output_noise.
-/// Errors: those of the scan and of the estimates; not determined, without a fallback.
+/// What the settings say, or what the lines tell. Where neither is given: the lowest order at whose own ratio, or within two
+/// standard deviations of it, a scan finds no need for more; from above it would not do, since a model of too high an order fits
+/// with any common factor in A and B, and tells no ratio. The output noise of a noise band stands in the settings as
+/// output_noise. Errors: those of the scan and of the estimates; not determined, without a fallback.
 Expected<OrderAndRatio> order_and_ratio(const Lines& lines, const Settings& settings);
 
 }  // namespace bodeflow::koopmans_levin

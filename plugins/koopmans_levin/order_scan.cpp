@@ -30,8 +30,8 @@ Expected<OrderScan> scan_orders(const Lines& lines, double ratio, Eigen::Index h
   for (std::size_t i = 0; i < scan.orders.size() && scan.chosen == 0; ++i) {
     bool falls = false;
     for (std::size_t j = i + 1; j < scan.orders.size(); ++j) {
-      const double here = scan.orders[i].noise;
-      falls = falls || (here > least && here > (1.0 + scan.tolerance) * scan.orders[j].noise);
+      const double here = scan.orders[i].noise, further = static_cast<double>(j - i);
+      falls = falls || (here > least && here > (1.0 + scan.tolerance * std::sqrt(further)) * scan.orders[j].noise);
     }
     const bool is_last_tried = scan.orders[i].order == highest;
     if (!falls && !is_last_tried) scan.chosen = scan.orders[i].order;

@@ -26,6 +26,19 @@ TEST_CASE("koopmans_levin: the order rule finds order 2 of Example 1 in at least
   }
 }
 
+TEST_CASE("koopmans_levin: the order rule finds order 2 in a scan that goes far beyond it") {
+  const Example1 system;
+  Random random(82);
+  int right = 0;
+  for (int run = 0; run < 50; ++run) {
+    const Records r = bodeflow::test::noisy(system.clean(random, 1000), random, system.input_noise, system.ratio);
+    const auto scan = scan_orders(*lines_of(r.input, r.output), system.ratio, 10);
+    REQUIRE(scan);
+    right += scan->chosen == 2 ? 1 : 0;
+  }
+  CHECK(right >= 48);
+}
+
 TEST_CASE("koopmans_levin: above the true order the two smallest eigenvalues come together") {
   const Example1 system;
   Random random(92);

@@ -94,8 +94,10 @@ void print_cost(const Json& record) {
   std::string line = fmt::format("cost {:.5g}", cost);
   if (std::isfinite(expected)) {
     line += fmt::format(", expected {:.5g}", expected);
-    const double freedom = number(attribute(record, "cost_degrees_of_freedom"));
-    if (freedom > 0.0) line += fmt::format(" with a standard deviation of {:.3g}", std::sqrt(freedom / 2.0));
+    const double freedom = number(attribute(record, "cost_degrees_of_freedom")),
+                 given = number(attribute(record, "cost_deviation"));
+    const double deviation = std::isfinite(given) ? given : freedom > 0.0 ? std::sqrt(freedom / 2.0) : std::nan("");
+    if (std::isfinite(deviation)) line += fmt::format(" with a standard deviation of {:.3g}", deviation);
   }
   fmt::print("  {}\n", line);
 }

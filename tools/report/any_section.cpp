@@ -33,6 +33,7 @@ std::string attribute_text(const nlohmann::ordered_json& value) {
 
 /// "sample_rate" as "Sample rate".
 std::string title_of(const std::string& name) {
+  if (name == "aic" || name == "mdl") return name == "aic" ? "AIC" : "MDL";
   std::string title = name;
   for (char& c : title)
     if (c == '_') c = ' ';
@@ -40,9 +41,14 @@ std::string title_of(const std::string& name) {
   return shortened(title, 60);
 }
 
+/// A number, or a list of numbers.
+bool is_numeric(const nlohmann::ordered_json& value) {
+  return value.is_number() || (value.is_array() && !value.empty() && value.front().is_number());
+}
+
 /// Of attributes whose unit is fixed by their name.
 std::string unit_of(const std::string& name) {
-  if (name == "sample_rate") return " Hz";
+  if (name == "sample_rate" || name == "band") return " Hz";
   if (name == "sample_time" || name == "delay" || name == "standard_deviation" || name == "largest_delay") return " s";
   if (name == "resolution") return " Hz";
   if (name == "period" || name == "shift" || name == "dropped_samples") return " samples";
@@ -125,7 +131,7 @@ Facts facts_of(const Record& record, const std::vector<std::string>& shown_elsew
     if (name == "sample_time" && value.is_number() && value.get<double>() == 0.0)
       facts.emplace_back("Time", "continuous");
     else
-      facts.emplace_back(title_of(name), value.is_number() ? attribute_text(value) + unit_of(name) : attribute_text(value));
+      facts.emplace_back(title_of(name), is_numeric(value) ? attribute_text(value) + unit_of(name) : attribute_text(value));
   }
   return facts;
 }

@@ -37,44 +37,47 @@ struct Compared {
 
 std::string probability_text(double p) { return p < 1e-4 ? "below 0.01 %" : percent(p); }
 
+/// A row of the table of fits: what it is, and a text for each model.
+template <class Text>
+std::vector<std::string> row_of(const Compared& c, const std::string& title, Text text) {
+  std::vector<std::string> row{title};
+  for (std::size_t m = 0; m < c.drawn(); ++m) row.push_back(text(m));
+  return row;
+}
+
 void add_fits(Page& page, const Compared& c) {
-  const std::string steps = fmt::format("{:.0f}-step", c.record.number("steps"));
+  const std::string steps = fmt::format("{:.0f}-step prediction", c.record.number("steps"));
   const std::string unit = c.record.text_at("output_units", 0, "");
-  Table table{"Fits",
-              {{"Model", false},
-               {"Fit, simulated [%]"},
-               {fmt::format("Fit, {} [%]", steps)},
-               {with_unit("Residual, simulated", unit)},
-               {with_unit("Residual, " + steps, unit)},
-               {"expected"},
-               {"FPE"},
-               {"AIC"}},
-              {}};
-  Table tests{"Residuals",
-              {{"Model", false},
-               {"Lags at which it depends on the input"},
-               {"White after the noise model: probability"},
-               {"Noise model", false},
-               {"Input's energy outside the fitted band"},
-               {"Output's"}},
-              {}};
   const Array* lag = c.record.array("lag");
   const std::size_t lags = lag == nullptr ? 0 : lag->size() / 2;
-  for (std::size_t m = 0; m < std::min(c.count(), kMostRows); ++m) {
-    table.rows.push_back({c.names[m], shown(c.of("fit", m), 5), shown(c.of("prediction_fit", m), 5),
-                          shown(c.of("residual_std", m)), shown(c.of("prediction_std", m)),
-                          shown(c.of("expected_prediction_std", m)), shown(c.of("fpe", m)), shown(c.of("aic", m), 6)});
-    tests.rows.push_back({c.names[m], fmt::format("{:.0f} of {}", c.of("cross_outside", m), lags + 1),
-                          probability_text(c.of("whiteness_probability", m)), c.record.text_at("noise_models", m, "–"),
-                          percent(c.of("input_outside_band", m)), percent(c.of("output_outside_band", m))});
-  }
+  Table table{"Fits", {{"", false}}, {}};
+  for (std::size_t m = 0; m < c.drawn(); ++m) table.columns.push_back({c.names[m]});
+  const auto number = [&](const std::string& title, const char* name, int digits) {
+    table.rows.push_back(row_of(c, title, [&](std::size_t m) { return shown(c.of(name, m), digits); }));
+  };
+  const auto share = [&](const std::string& title, const char* name) {
+    table.rows.push_back(row_of(c, title, [&](std::size_t m) { return percent(c.of(name, m)); }));
+  };
+  number("Fit of the simulation [%]", "fit", 5);
+  number("Fit of the " + steps + " [%]", "prediction_fit", 5);
+  number(with_unit("Residual of the simulation", unit), "residual_std", 4);
+  number(with_unit("Residual of the " + steps, unit), "prediction_std", 4);
+  number(with_unit("as its noise model says", unit), "expected_prediction_std", 4);
+  number("FPE", "fpe", 4);
+  number("AIC", "aic", 6);
+  table.rows.push_back(row_of(c, "Noise model", [&](std::size_t m) { return c.record.text_at("noise_models", m, "–"); }));
+  table.rows.push_back(row_of(c, "Probability that what it leaves is white",
+                              [&](std::size_t m) { return probability_text(c.of("whiteness_probability", m)); }));
+  table.rows.push_back(row_of(c, "Lags at which the residual depends on the input",
+                              [&](std::size_t m) { return fmt::format("{:.0f} of {}", c.of("cross_outside", m), lags + 1); }));
+  share("Energy of the input outside the fitted band", "input_outside_band");
+  share("Energy of the output outside the fitted band", "output_outside_band");
   add_table(page.body(), table);
   page.paragraph(
       fmt::format("Fit: 100 (1 − |y − ŷ| / |y − mean y|). Estimated beside the models: {}. The noise models are fitted to {}; "
                   "FPE and AIC count "
                   "their parameters, too.",
                   c.record.text("estimated"), c.record.text("noise_models_from")));
-  add_table(page.body(), tests);
 }
 
 Series curve(const std::string& name, int colour, const std::vector<double>& x, std::vector<double> y) {

@@ -234,7 +234,7 @@ void add_own_response(Page& page, const Record& record, const Model& model) {
 }
 
 /// The last response of the model's size.
-const Response* response_for(const Model& model, const std::vector<Response>& responses) {
+const Response* response_for(const Model& model, std::span<const Response> responses) {
   for (auto response = responses.rbegin(); response != responses.rend(); ++response)
     if (response->outputs == model.outputs && response->inputs == model.inputs) return &*response;
   return nullptr;
@@ -251,7 +251,7 @@ void add_polynomials(Page& page, const Record& record) {
 
 }  // namespace
 
-bool add_model(Page& page, const Record& record, const std::vector<Response>& responses) {
+bool add_model(Page& page, const Record& record, std::span<const Response> responses) {
   const auto model = read_model(record);
   const bool roots = !roots_of(record, true).empty() || !roots_of(record, false).empty();
   if (!model && !roots && parameters_of(record) == nullptr) return false;

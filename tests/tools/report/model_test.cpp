@@ -53,6 +53,23 @@ TEST_CASE("report model: the same plant in states gives the same curve") {
   for (std::size_t k = 0; k < frequency.size(); ++k) CHECK(std::abs(a[k] - b[k]) < 1e-12);
 }
 
+TEST_CASE("report model: a model fitted to samples of a held input is drawn as these samples see it") {
+  // 3 a / (s + a), late by 1.5 samples of 10 ms: y[n+1] = c y[n] + 3 (1 - d) u[n-1] + 3 (d - c) u[n-2], c and d over a sample and
+  // half of one.
+  const double a = 30.0, h = 0.01, c = std::exp(-a * h), d = std::exp(-0.5 * a * h), f = 12.0;
+  Record record;
+  record.type = "model";
+  record.attributes = {
+      {"form", "transfer_function"}, {"sample_time", 0.0}, {"delay", 1.5 * h}, {"hold", "zero_order"}, {"sample_rate", 100.0}};
+  record.arrays = {{"numerator", {"", {1}, {3.0 * a}, {}}}, {"denominator", {"", {2}, {1.0, a}, {}}}};
+  const std::complex<double> z = std::polar(1.0, 2.0 * std::numbers::pi * f * h);
+  const std::complex<double> expected = 3.0 * ((1.0 - d) / z + (d - c) / (z * z)) / (z - c);
+  CHECK(std::abs(read_model(record)->response({f}, 0, 0)[0] - expected) < 1e-12);
+  record.attributes["hold"] = "none";
+  const std::complex<double> s(0.0, 2.0 * std::numbers::pi * f);
+  CHECK(std::abs(read_model(record)->response({f}, 0, 0)[0] - 3.0 * a / (s + a) * std::exp(-1.5 * h * s)) < 1e-12);
+}
+
 TEST_CASE("report model: arrays that don't fit each other can't be evaluated") {
   Record record = second_order();
   record.arrays[1].second.shape = {1, 3};

@@ -81,6 +81,10 @@ ordered_json model() {
                         {"sample_time", 0.0},
                         {"delay", 0.0006},
                         {"parameter_names", {"gain", "stiffness"}},
+                        {"conventions", {"continuous in time"}},
+                        {"cost", 120.0},
+                        {"expected_cost", 76.0},
+                        {"cost_degrees_of_freedom", 152.0},
                         {"warnings", {"a mode may be missing near 150 Hz: raise the order"}}}}};
   ordered_json& arrays = record["arrays"];
   arrays["numerator"] = array_of("", {1}, {w * w});
@@ -110,6 +114,82 @@ ordered_json monte_carlo() {
                       {"attributes", {{"runs", 100}, {"seed", 1}, {"quantity_names", {"inertia", "stiffness"}}}}};
   for (const char* name : {"mean", "std", "truth", "published_mean", "published_std"})
     record["arrays"][name] = array_of("", {2}, {0.0012, 512.0});
+  return record;
+}
+
+/// Two models held against data.
+ordered_json comparison() {
+  const int samples = 80, lags = 10;
+  ordered_json record{{"type", "comparison"},
+                      {"attributes",
+                       {{"models", {"first", "second"}},
+                        {"methods", {"a.model", "a.model"}},
+                        {"parameter_names", {"gain", "corner"}},
+                        {"parameter_units", {"1", "rad/s"}},
+                        {"output_names", {"angle"}},
+                        {"output_units", {"rad"}},
+                        {"steps", 10},
+                        {"samples", samples},
+                        {"sample_rate", 1000.0},
+                        {"confidence", 0.99},
+                        {"estimated", "initial state and output offset, from these data"},
+                        {"noise_models", {"white noise", "autoregression of order 3"}},
+                        {"noise_models_from", "the simulation's residual of these data, order by AICc"},
+                        {"warnings", ordered_json::array()}}}};
+  ordered_json& arrays = record["arrays"];
+  for (const char* name : {"fit", "prediction_fit", "residual_std", "prediction_std", "expected_prediction_std", "fpe", "aic",
+                           "whiteness_probability", "cross_outside", "input_outside_band"})
+    arrays[name] = array_of("", {2}, {0.9, 0.01});
+  arrays["output_outside_band"] = array_of("", {2}, {0.2, nullptr});
+  arrays["autocorrelation_band"] = arrays["cross_correlation_band"] = array_of("", {2}, {0.1, 0.1});
+  arrays["parameters"] = array_of("", {2, 2}, {1.0, 50.0, 1.1, nullptr});
+  arrays["parameter_std"] = array_of("", {2, 2}, {0.01, 1.0, 0.02, nullptr});
+  arrays["parameter_difference"] = array_of("", {2, 2}, {nullptr, nullptr, 4.5, nullptr});
+  arrays["parameter_probability"] = array_of("", {2}, {nullptr, 1e-5});
+  arrays["poles"] = array_of("rad/s", {2, 1}, {{-2.0, 40.0}, {nullptr, nullptr}});
+  const auto wave = [](int n) { return std::sin(0.3 * n); };
+  arrays["time"] = array_of("s", {samples}, list(samples, [](int n) { return 0.001 * n; }));
+  arrays["measured"] = array_of("rad", {samples}, list(samples, wave));
+  arrays["simulated"] = array_of("rad", {2, samples}, list(2 * samples, [&](int n) { return 0.98 * wave(n % samples); }));
+  arrays["predicted"] = array_of("rad", {2, samples}, list(2 * samples, [&](int n) { return 0.99 * wave(n % samples); }));
+  arrays["lag"] = array_of("", {2 * lags + 1}, list(2 * lags + 1, [&](int n) { return double(n - lags); }));
+  arrays["cross_correlation"] = array_of("", {2, 2 * lags + 1}, list(4 * lags + 2, [&](int n) { return 0.05 * wave(n); }));
+  arrays["innovation_autocorrelation"] =
+      array_of("", {2, lags + 1}, list(2 * lags + 2, [&](int n) { return n % (lags + 1) == 0 ? 1.0 : 0.02; }));
+  arrays["frequency"] = array_of("Hz", {kLines}, list(kLines, frequency));
+  arrays["response"] =
+      array_of("rad/A", {2, kLines}, list(2 * kLines, [](int n) { return complex_json(plant(frequency(n % kLines))); }));
+  return record;
+}
+
+ordered_json order_scan() {
+  ordered_json record{{"type", "order_scan"},
+                      {"attributes", {{"chosen", 2}, {"rule", "the lowest that no higher one undercuts"}}}};
+  ordered_json& arrays = record["arrays"];
+  arrays["order"] = array_of("1", {4}, {1.0, 2.0, 3.0, 4.0});
+  arrays["cost"] = array_of("1", {4}, {9e3, 102.0, 100.0, 99.0});
+  arrays["expected_cost"] = array_of("1", {4}, {104.0, 102.0, 100.0, 98.0});
+  arrays["cost_probability"] = array_of("1", {4}, {0.0, 0.5, 0.5, 0.4});
+  arrays["aic"] = array_of("1", {4}, {9.1e3, 110.0, nullptr, 113.0});
+  return record;
+}
+
+ordered_json residual() {
+  ordered_json record{{"type", "residual"}, {"attributes", {{"output_names", {"angle"}}, {"input_name", "current"}}}};
+  ordered_json& arrays = record["arrays"];
+  arrays["frequency"] = array_of("Hz", {kLines}, list(kLines, frequency));
+  arrays["relative_error"] = array_of("1", {kLines, 1}, list(kLines, [](int n) { return 0.01 * (1.0 + n % 3); }));
+  arrays["band"] = array_of("Hz", {2, 2}, {5.0, 100.0, 105.0, 200.0});
+  arrays["band_relative_error"] = array_of("1", {2, 1}, {0.02, 0.03});
+  arrays["band_residual"] = array_of("1", {2, 1}, {0.9, 1.1});
+  return record;
+}
+
+ordered_json whiteness() {
+  ordered_json record{{"type", "whiteness"},
+                      {"attributes", {{"statistic", 15.4}, {"degrees_of_freedom", 19}, {"probability", 0.7}}}};
+  record["arrays"]["frequency"] = array_of("Hz", {kLines}, list(kLines, frequency));
+  record["arrays"]["power"] = array_of("1", {kLines}, list(kLines, [](int n) { return 1.0 + 0.01 * (n % 5); }));
   return record;
 }
 
@@ -171,6 +251,10 @@ ordered_json results_of_all_types() {
   results["fit"] = model();
   results["discrete"] = discrete_model();
   results["study"] = monte_carlo();
+  results["beside"] = comparison();
+  results["orders"] = order_scan();
+  results["left"] = residual();
+  results["white"] = whiteness();
   results["gains"] = sweep();
   results["controller"] = {
       {"type", "controller"},

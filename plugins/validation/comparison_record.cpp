@@ -125,7 +125,7 @@ Expected<Comparison> compare_models(std::vector<std::string> names, std::vector<
   Comparison c;
   c.names = std::move(names);
   c.models = std::move(models);
-  c.parameters = parameter_table(c.models);
+  c.parameters = parameter_table(c.names, c.models);
   for (std::size_t i = 0; i < c.models.size(); ++i) {
     auto poles = poles_rad_s(c.models[i]);
     if (!poles) return unexpected("model '" + c.names[i] + "': " + poles.error().text);

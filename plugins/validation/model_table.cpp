@@ -60,17 +60,22 @@ double joint_probability(const records::ModelData& a, const records::ModelData& 
 
 }  // namespace
 
-ParameterTable parameter_table(const std::vector<records::ModelData>& models) {
+ParameterTable parameter_table(const std::vector<std::string>& names, const std::vector<records::ModelData>& models) {
   ParameterTable t;
   std::vector<Shared> all;
-  for (const auto& m : models)
-    for (std::size_t i = 0; i < m.parameter_names.size(); ++i)
-      if (const Shared p = parameter_of(m, i); std::find(all.begin(), all.end(), p) == all.end()) all.push_back(p);
-  for (const Shared& p : all) {
-    const bool ambiguous =
-        std::count_if(all.begin(), all.end(), [&](const Shared& other) { return other.name == p.name; }) > 1 && !p.method.empty();
-    t.names.push_back(ambiguous ? p.name + " of " + p.method : p.name);
-    t.units.push_back(p.unit);
+  std::vector<std::string> owner;  // the first model that has it
+  for (std::size_t m = 0; m < models.size(); ++m)
+    for (std::size_t i = 0; i < models[m].parameter_names.size(); ++i) {
+      const Shared p = parameter_of(models[m], i);
+      if (std::find(all.begin(), all.end(), p) != all.end()) continue;
+      all.push_back(p);
+      owner.push_back(names[m]);
+    }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const auto alike = [&](const Shared& other) { return other.name == all[k].name; };
+    const bool ambiguous = std::count_if(all.begin(), all.end(), alike) > 1;
+    t.names.push_back(ambiguous ? all[k].name + " of " + owner[k] : all[k].name);
+    t.units.push_back(all[k].unit);
   }
   const auto rows = static_cast<Eigen::Index>(models.size()), columns = static_cast<Eigen::Index>(all.size());
   t.values = t.deviations = t.difference = Eigen::MatrixXd::Constant(rows, columns, kNaN);

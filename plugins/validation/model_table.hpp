@@ -20,8 +20,9 @@ struct ParameterTable {
   Eigen::VectorXd probability;
 };
 
-/// Parameters with the same name and unit are the same where both models come from the same method, or are physical.
-ParameterTable parameter_table(const std::vector<records::ModelData>& models);
+/// Parameters with the same name and unit are the same where both models come from the same method, or are physical; else
+/// the name says whose it is. names: of the models.
+ParameterTable parameter_table(const std::vector<std::string>& names, const std::vector<records::ModelData>& models);
 
 /// The poles in rad/s with imaginary part at least 0, by magnitude; those of a discrete-time model as ln(z) / sample time.
 Expected<Eigen::VectorXcd> poles_rad_s(const records::ModelData& model);

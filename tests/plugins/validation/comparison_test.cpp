@@ -55,7 +55,7 @@ double value(const RecordView& r, const char* name, std::size_t i) { return r.ar
 }  // namespace
 
 TEST_CASE("comparison: parameters side by side, and how far apart they are") {
-  const ParameterTable t = parameter_table({second_order(), other()});
+  const ParameterTable t = parameter_table({"A", "B"}, {second_order(), other()});
   REQUIRE(t.names == std::vector<std::string>{"a1", "a2", "b1", "b2", "other"});
   CHECK(t.values(1, 0) == -1.48);
   CHECK(std::isnan(t.values(1, 3)));
@@ -68,16 +68,16 @@ TEST_CASE("comparison: parameters side by side, and how far apart they are") {
   // Coefficients of another method are other parameters, physical ones are not.
   records::ModelData by_other_method = other();
   by_other_method.method = "elsewhere";
-  const ParameterTable apart = parameter_table({second_order(), by_other_method});
-  CHECK(apart.names.front() == "a1 of hand");
+  const ParameterTable apart = parameter_table({"A", "B"}, {second_order(), by_other_method});
+  CHECK(apart.names.front() == "a1 of A");
   CHECK(apart.names.size() == 8);
   CHECK(std::isnan(apart.probability[1]));
   records::ModelData motor = second_order();
   motor.form = by_other_method.form = "physical";
-  CHECK(parameter_table({motor, by_other_method}).difference(1, 0) == Approx(0.02 / std::sqrt(2e-4)));
+  CHECK(parameter_table({"A", "B"}, {motor, by_other_method}).difference(1, 0) == Approx(0.02 / std::sqrt(2e-4)));
   records::ModelData unsure = other();
   unsure.covariance.resize(0, 0);
-  CHECK(std::isnan(parameter_table({second_order(), unsure}).probability[1]));
+  CHECK(std::isnan(parameter_table({"A", "B"}, {second_order(), unsure}).probability[1]));
 }
 
 TEST_CASE("comparison: poles and responses of models in s and z stand beside each other") {

@@ -32,7 +32,7 @@ GivenPhase phase_of(const graph::Node& node) {
       for (const auto& item : entry.value.items) phase.connections.push_back(text_of(item));
     } else if (entry.key == "run" && entry.value.is_map()) {
       for (const auto& setting : entry.value.entries) phase.settings.emplace_back(setting.key, text_of(setting.value));
-    } else if (entry.key != "bodeflow" && entry.key != "title" && entry.key != "phases") {
+    } else if (entry.key != "bodeflow" && entry.key != "title" && entry.key != "phases" && entry.key != "summary") {
       phase.settings.emplace_back(entry.key, text_of(entry.value));
     }
   }
@@ -53,6 +53,17 @@ tl::expected<std::vector<GivenPhase>, std::string> read_given(const std::string&
   if (listed != nullptr)
     for (const auto& item : listed->items) phases.push_back(phase_of(item));
   return phases;
+}
+
+std::vector<std::string> read_shown(const std::string& graph_text) {
+  graph::Report report;
+  const auto root = graph::parse(graph_text, graph::Source{"graph.yaml", "", false}, report);
+  const graph::Node* summary = root && root->is_map() ? root->find("summary") : nullptr;
+  const graph::Node* show = summary != nullptr && summary->is_map() ? summary->find("show") : nullptr;
+  std::vector<std::string> names;
+  if (show != nullptr)
+    for (const auto& item : show->items) names.push_back(item.text);
+  return names;
 }
 
 }  // namespace bodeflow::tools::report

@@ -72,20 +72,30 @@ std::vector<std::size_t> order_of(const RunData& run) {
   return order;
 }
 
+/// How many of the responses a record may be compared with: those before it and those of its own block, which may give the
+/// response that it fitted as another output. `before`: responses before each record, and of all.
+std::size_t known_to(const RunData& run, std::size_t n, const std::vector<std::size_t>& before) {
+  const std::string own = run.records[n].key + ".";
+  std::size_t end = n + 1;
+  while (end < run.records.size() && run.records[end].key.rfind(own, 0) == 0) ++end;
+  return before[end > n + 1 ? end : n];
+}
+
 void add_records(Page& page, const RunData& run) {
   std::vector<Response> responses;
-  std::vector<std::size_t> before;  // responses that came before each record
+  std::vector<std::size_t> before;  // responses that came before each record, and all
   for (const auto& record : run.records) {
     before.push_back(responses.size());
     if (auto response = read_response(record)) responses.push_back(std::move(*response));
   }
+  before.push_back(responses.size());
   std::set<std::string> told;  // several outputs of a block often carry the same warning
   for (const std::size_t n : order_of(run)) {
     const Record& record = run.records[n];
     page.open_section(record.key, kind_of(record.type));
     for (const auto& warning : record.texts("warnings"))
       if (told.insert(warning).second) page.note(warning);
-    if (!add_by_type(page, record, {responses.data(), before[n]})) add_any(page, record);
+    if (!add_by_type(page, record, {responses.data(), known_to(run, n, before)})) add_any(page, record);
     page.close_section();
   }
   if (run.records.empty()) {

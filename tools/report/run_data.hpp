@@ -57,4 +57,7 @@ tl::expected<RunData, std::string> read_run(const std::filesystem::path& directo
 /// Phases and blocks of a graph.yaml. Error: it is no graph.
 tl::expected<std::vector<GivenPhase>, std::string> read_given(const std::string& graph_text);
 
+/// The results that a graph.yaml wants shown, in order; none where it does not say.
+std::vector<std::string> read_shown(const std::string& graph_text);
+
 }  // namespace bodeflow::tools::report

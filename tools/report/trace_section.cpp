@@ -67,10 +67,13 @@ void add_errors(Page& page, const Record& record) {
   }
   if (bars.size() < 2) return;
   const std::string unit = record.text("unit"), limit = shown(record.number("noise_floor_99.9"), unit);
+  const double less = record.number("excess_before"), rest = record.number("excess_after");
+  const std::string excess = std::isfinite(less + rest) ? shown(less, unit) + " before, " + shown(rest, unit) + " after" : "–";
   page.figure(draw_bars("Error of the model", bars, unit, kWide), draw_bars("Error of the model", bars, unit, kNarrow),
               record.key + "_error",
               "Root mean square on the test record, which was not used before, of the mean period within the band of the lines." +
-                  (limit == "–" ? "" : " The noise alone stays below " + limit + " with a probability of 99.9 %."));
+                  (limit == "–" ? "" : " The noise alone stays below " + limit + " with a probability of 99.9 %.") +
+                  (added && excess != "–" ? " What is not noise: " + excess + "." : ""));
 }
 
 void add_effects(Page& page, const Record& record) {
@@ -212,13 +215,13 @@ bool add_trace(Page& page, const Record& record) {
   const std::string verdict = record.text("verdict"), finding = record.text("finding");
   if (verdict.empty()) return false;
   page.body().open("p").element("b", finding.empty() ? verdict_text(verdict) : finding).close("p");
-  for (const auto& warning : record.texts("warnings")) page.note(warning);
   add_errors(page, record);
   add_effects(page, record);
   add_parameters(page, record);
   add_classes(page, record);
   add_candidates(page, record);
   add_spectrum(page, record);
+  for (const auto& declared : record.texts("conventions")) page.paragraph("Declared: " + declared + ".");
   add_attributes(page, record,
                  {"verdict",
                   "finding",
@@ -240,6 +243,27 @@ bool add_trace(Page& page, const Record& record) {
                   "candidate_reasons",
                   "candidate_p_limit",
                   "candidate_select_limit"});
+  return true;
+}
+
+bool add_reveal(Page& page, const Record& record) {
+  const std::string sentence = record.text("sentence");
+  if (sentence.empty()) return false;
+  page.body().open("p").element("b", sentence).close("p");
+  const Array* truth = record.array("parameters_true");
+  if (truth == nullptr || truth->is_complex()) return true;
+  const Array *before = record.array("parameters_before", truth->shape), *after = record.array("parameters_after", truth->shape),
+              *std = record.array("parameters_after_std", truth->shape);
+  if (before == nullptr || after == nullptr || std == nullptr) return true;
+  Table table{
+      "Parameters beside the true ones", {{"Parameter", false}, {"Before"}, {"After"}, {"std"}, {"True"}, {"Error / std"}}, {}};
+  for (std::size_t n = 0; n < truth->size(); ++n) {
+    table.rows.push_back({with_unit(record.text_at("parameter_names", n, fmt::format("parameter {}", n + 1)),
+                                    record.text_at("parameter_units", n, "")),
+                          shown(before->re[n], 6), shown(after->re[n], 6), shown(std->re[n], 3), shown(truth->re[n], 6),
+                          shown((after->re[n] - truth->re[n]) / std->re[n], 2)});
+  }
+  add_table(page.body(), table);
   return true;
 }
 

@@ -208,6 +208,7 @@ void InductionMotor::receive(int, const RecordView& record, Io&) {
   motor_ = std::move(*made);
   motor_->set_state(state);
   setup_ = changed;
+  if (setup_.hidden.resistance_drift != 0.0) warm();
 }
 
 void InductionMotor::process(Io& io) {

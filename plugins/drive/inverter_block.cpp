@@ -100,6 +100,7 @@ void Inverter::resolve(Facts& f) {
   StreamFacts& edges = f.out(legs);
   edges = u;
   edges.unit.clear();
+  for (const char* name : {"excitation.amplitudes", "excitation.crest_factor", "noise.std"}) edges.notes.erase(name);
   edges.channel_names = {"a_on", "a_off", "b_on", "b_off"};
   edges.channel_units = {"s", "s", "s", "s"};
   if (u.channels == 2) {

@@ -29,7 +29,7 @@ Switching switching(const Modulation& m, AlphaBeta reference, AlphaBeta current,
     const double duty = std::clamp(asked + sign(known[leg]) * m.compensation_time_s / m.period_s, least, 1.0 - least);
     Pulse& pulse = s.legs[leg];
     pulse.on = 0.5 * (1.0 - duty) * m.period_s + (flowing[leg] > 0.0 ? m.dead_time_s : 0.0);
-    pulse.off = 0.5 * (1.0 + duty) * m.period_s + (flowing[leg] < 0.0 ? m.dead_time_s : 0.0);
+    pulse.off = std::min(m.period_s, 0.5 * (1.0 + duty) * m.period_s + (flowing[leg] < 0.0 ? m.dead_time_s : 0.0));
     mean[leg] = (pulse.off - pulse.on) / m.period_s * m.dc_link_v;
   }
   s.mean_voltage = clarke(mean[0], mean[1], mean[2]);

@@ -49,8 +49,9 @@ TEST_CASE("pwm: compensation by the right sign gives the reference back", "[driv
 
 TEST_CASE("pwm: over-modulation is said, and every edge stays inside the period", "[drive]") {
   const Modulation m = bench();
-  for (const double sign : {-1.0, 1.0}) {
-    const Switching s = switching(m, {400, 0}, {sign, 0}, {});
+  for (int k = 0; k < 1000; ++k) {
+    const double turn = 0.0063 * k, sign = k % 2 == 0 ? -1.0 : 1.0;
+    const Switching s = switching(m, {400 * std::cos(turn), 400 * std::sin(turn)}, {sign, 0.5 * sign}, {});
     CHECK(s.limited);
     for (const Pulse& p : s.legs) {
       CHECK(p.on >= 0);

@@ -40,7 +40,7 @@ class InductionMotor final : public Block {
 
   MotorSetup given_;  // as the parameters say
   MotorSetup setup_;  // with the properties of a record
-  int axes_ = 0;  // 0: without supply
+  int axes_ = 0;      // 0: without supply
   std::unique_ptr<Motor> motor_;
   std::uint64_t periods_ = 0;
   std::uint64_t warm_every_ = 1;

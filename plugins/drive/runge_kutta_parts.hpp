@@ -7,7 +7,7 @@
 namespace bodeflow::drive {
 
 inline constexpr double kLongestStep = 0.25;  ///< of 1 / (largest decay rate + |omega|)
-inline constexpr double kMostParts = 1e5;    ///< of an interval; a motor that needs more has left the range of numbers
+inline constexpr double kMostParts = 1e5;     ///< of an interval; a motor that needs more has left the range of numbers
 
 /// How many equal Runge-Kutta steps an interval takes for what changes at `rate`: 1 or more; NaN where it would be too many.
 inline double runge_kutta_parts(double length, double rate) {

@@ -178,6 +178,51 @@ TEST_CASE("identify reads the recording of a run") {
   CHECK(denominator[1] / denominator[0] == Approx(-1.5).epsilon(1e-7));
 }
 
+TEST_CASE("identify gives the parameters of a motor at standstill from a recording with noise on voltage and current") {
+  // Rs 6.6 ohm, Rr 5.5 ohm, Ls = Lr 475 mH, Lm 454 mH, as alpha = Rr/Lr, sigma = Ls - Lm^2/Lr and so on.
+  const double alpha = 5.5 / 0.475, sigma = 0.475 - 0.454 * 0.454 / 0.475, lm_beta = 0.454 * 0.454 / 0.475 / sigma;
+  const double gamma = 6.6 / sigma + alpha * lm_beta;
+  const auto number = [](double x) { return nlohmann::json(x).dump(); };
+  const Folder folder;
+  folder.write(
+      "bench.yaml",
+      "bodeflow: 1\nrun: {duration: 60 s}\nrecord: [voltage.out, current.out]\nblocks:\n"
+      "  excitation: {block: generators.multisine, sample_rate: 250 Hz, period: 1250, lines: {first: 1, last: 249, step: 2}, "
+      "unit: V}\n"
+      "  motor: {block: plants.linear, unit: A, numerator: [" +
+          number(1.0 / sigma) + ", " + number(alpha / sigma) + "], denominator: [1, " + number(gamma + alpha) + ", " +
+          number(alpha * (gamma - alpha * lm_beta)) +
+          "]}\n"
+          "  of_voltage: {block: generators.noise, sample_rate: 250 Hz, std: 10 mV, unit: V}\n"
+          "  of_current: {block: generators.noise, sample_rate: 250 Hz, std: 0.1 mA, unit: A}\n"
+          "  voltage: {block: filters.sum}\n  current: {block: filters.sum}\n"
+          "connections:\n  - excitation -> motor -> current.a\n  - of_current -> current.b\n"
+          "  - excitation -> voltage.a\n  - of_voltage -> voltage.b\n");
+  const auto measured = run_bodeflow({"run", "bench.yaml", "--out", "measured"}, folder.path());
+  INFO(measured.err);
+  REQUIRE(measured.exit_code == 0);
+  const auto ended =
+      run_bodeflow({"identify", "measured/data.h5", "--input", "voltage.out",    "--output", "current.out",  "--method",
+                    "frisch",   "--period",         "1250",    "--skip",         "2",        "--set",        "hold=4 ms",
+                    "--set",    "lines.first=1",    "--set",   "lines.last=249", "--set",    "lines.step=2", "--out",
+                    "out"},
+                   folder.path());
+  INFO(ended.err);
+  REQUIRE(ended.exit_code == 0);
+  const auto model = model_in(folder);
+  CHECK(model["attributes"]["form"] == "physical");
+  CHECK(model["attributes"]["parameter_names"] == nlohmann::json{"gamma", "alpha", "Lm_beta", "sigma"});
+  const auto parameters = list(model, "parameters"), covariance = list(model, "covariance");
+  const double truth[] = {gamma, alpha, lm_beta, sigma};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double deviation = std::sqrt(covariance[5 * i]);
+    CHECK(deviation < 0.2 * truth[i]);
+    CHECK(std::abs(parameters[i] - truth[i]) < 4.0 * deviation);
+  }
+  CHECK(list(model, "denominator").size() == 3);
+  CHECK(holds(ended.out, "sigma"));
+}
+
 TEST_CASE("identify says what is missing, and what there is") {
   const Folder folder;
   folder.write("bench.csv", bench_csv({200, 1, 0.1, 1.0, 0}));

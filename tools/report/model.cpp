@@ -61,6 +61,12 @@ bool read_state_space(const Record& record, Model& model) {
          record.array("B", {states, model.inputs}) != nullptr && record.array("C", {model.outputs, states}) != nullptr;
 }
 
+/// A model whose response is numerator over denominator: those with physical parameters state them as well.
+bool is_rational(const Record& record) {
+  const std::string form = record.text("form");
+  return form == "transfer_function" || form == "physical";
+}
+
 Root root_at(const Array& values, const Array* covariance, std::size_t n) {
   Root root{values.at(n), false, 0.0, 0.0, 0.0};
   if (covariance == nullptr) return root;
@@ -94,15 +100,15 @@ std::optional<Model> read_model(const Record& record) {
   Model model;
   model.record = &record;
   const std::string form = record.text("form");
-  const bool fits = form == "transfer_function" ? read_transfer_function(record, model)
-                    : form == "state_space"     ? read_state_space(record, model)
-                                                : false;
+  const bool fits = is_rational(record)     ? read_transfer_function(record, model)
+                    : form == "state_space" ? read_state_space(record, model)
+                                            : false;
   if (!fits || model.outputs == 0 || model.inputs == 0) return {};
   const double sample_time = record.number("sample_time"), delay = record.number("delay");
   model.sample_time = sample_time > 0.0 ? sample_time : 0.0;
   model.delay = std::isfinite(delay) ? delay : 0.0;
   const double rate = record.number("sample_rate");
-  if (record.text("hold") == "zero_order" && form == "transfer_function" && model.sample_time == 0.0 && rate > 0.0)
+  if (record.text("hold") == "zero_order" && is_rational(record) && model.sample_time == 0.0 && rate > 0.0)
     model.hold = 1.0 / rate;
   return model;
 }
@@ -110,7 +116,7 @@ std::optional<Model> read_model(const Record& record) {
 std::vector<std::complex<double>> Model::response(const std::vector<double>& frequency, std::size_t i, std::size_t j) const {
   const Eigen::VectorXd lines = Eigen::Map<const Eigen::VectorXd>(frequency.data(), static_cast<Eigen::Index>(frequency.size()));
   std::vector<std::complex<double>> values(frequency.size());
-  if (record->text("form") == "transfer_function") {
+  if (is_rational(*record)) {
     const numerics::TransferFunction system{polynomial_of(*record->array("numerator"), i, j),
                                             polynomial_of(*record->array("denominator"), i, j), sample_time};
     const auto held = hold > 0.0 ? held_response(system, hold, std::max(delay, 0.0), lines) : std::nullopt;
@@ -139,7 +145,7 @@ std::vector<Root> roots_of(const Record& record, bool poles) {
     return roots;
   }
   const auto model = read_model(record);
-  if (!model || model->outputs * model->inputs != 1 || record.text("form") != "transfer_function") return roots;
+  if (!model || model->outputs * model->inputs != 1 || !is_rational(record)) return roots;
   const Array& polynomial = *record.array(poles ? "denominator" : "numerator");
   if (polynomial.size() > kMostStates) return roots;
   if (const auto found = numerics::roots(numerics::trimmed(polynomial_of(polynomial, 0, 0))))

@@ -65,7 +65,7 @@ void Motor::describe(Describe& d) {
   d.message_out(model).record_type("model").doc("gamma, alpha, Lm_beta, sigma with covariance");
   d.message_out(identifiable).record_type("parameters").doc("Rs, Ls, Lr/Rr, sigma: what the terminals tell");
   d.message_out(physical).record_type("parameters").doc("Rs, Rr, Ls, Lr, Lm under the assumption Ls = Lr");
-  d.message_out(fitted).record_type("frequency_response").doc("the response that was fitted, hold and delay taken off");
+  d.message_out(fitted).record_type("frequency_response").doc("the response that was fitted, the hold taken off");
   d.parameter("method", "maximum_likelihood")
       .choices({"maximum_likelihood", "frisch", "none"})
       .doc("maximum_likelihood is recommended; frisch is the paper's, none its comparison without the scheme");

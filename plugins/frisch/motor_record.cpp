@@ -194,7 +194,9 @@ RecordBuilder fitted_response_record(const MotorEstimate& e, const MotorContext&
   d.output_names = {first.output_name};
   d.response_units = {records::ratio_unit(first.output_unit, first.input_unit)};
   d.frequency_hz = e.omega(order) / (2.0 * std::numbers::pi);
-  d.response = e.response(order);
+  const double delay = c.settings.sampling.delay_s;
+  d.response =
+      e.response(order).binaryExpr(e.omega(order), [delay](Complex g, double w) { return g * std::polar(1.0, -w * delay); });
   if (e.variance.size() > 0) {
     d.variance = e.variance(order);
     double degrees = 0.0;

@@ -25,8 +25,8 @@ RecordBuilder identifiable_record(const MotorEstimate& estimate);
 /// A record `parameters` of the equivalent circuit under the assumption Ls = Lr, which it names.
 RecordBuilder equal_inductance_record(const MotorEstimate& estimate);
 
-/// A record `frequency_response`: the response as it was fitted, all bands, of the motor in continuous time. Lines that two bands
-/// share stand there once, from the first of them.
+/// A record `frequency_response`: the response that was fitted, all bands, of the motor in continuous time, with the delay that
+/// the model has. Lines that two bands share stand there once, from the first of them.
 RecordBuilder fitted_response_record(const MotorEstimate& estimate, const MotorContext& context);
 
 /// What spoils the estimate, each with what to do.

@@ -55,10 +55,11 @@ bool Crew::watch(std::size_t first) {
     run_->stop_wanted();
     const std::uint64_t now = calls_of(members_);
     const double still = Seconds(Clock::now() - since).count();
+    const bool finishing = !run_->control.stopping() && in_finish(members_);
     if (now != calls) {
       calls = now;
       since = Clock::now();
-    } else if (patience > 0.0 && still >= limit) {
+    } else if (patience > 0.0 && still >= limit * (finishing ? kFinishing : 1.0)) {
       std::string report = stall_report(*run_, members_, still);
       if (run_->control.stopping()) {
         hang_ = std::move(report);

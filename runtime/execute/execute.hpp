@@ -76,9 +76,9 @@ struct Outcome {
 /// take effect after a block's last firing are given to it before its finish(); changes are not.
 ///
 /// Errors end the run as partial, with the block and its own words; the first one of several threads stands. Without any
-/// call completed for Options::watchdog_s the run ends with a reason that names who waits for whom. A call that hangs can't be
-/// cancelled: then `hung` is set, the block in that call is not deactivated, its thread stays behind, detached, with its
-/// memory. The caller must not destroy that instance, or unload its plugin, and should end the process soon.
+/// call completed for Options::watchdog_s (a finish: 60 times that) the run ends with a reason that names who waits for whom. A
+/// call that hangs can't be cancelled: then `hung` is set, the block in that call is not deactivated, its thread stays behind,
+/// detached, with its memory. The caller must not destroy that instance, or unload its plugin, and should end the process soon.
 Outcome execute(const graph::Phase& phase, const plan::Facts& facts, const plan::Plan& plan,
                 const std::vector<std::unique_ptr<Instance>>& instances, const std::vector<InitialRecord>& initial, Sink& sink,
                 const Options& options);

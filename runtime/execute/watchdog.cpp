@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <deque>
 #include <set>
+#include <string_view>
 
 namespace bodeflow::execute {
 namespace {
@@ -71,6 +72,13 @@ std::uint64_t calls_of(const std::vector<Member>& members) {
   std::uint64_t calls = 0;
   for (const Member& member : members) calls += member.lane->doing().calls;
   return calls;
+}
+
+bool in_finish(const std::vector<Member>& members) {
+  return std::any_of(members.begin(), members.end(), [](const Member& member) {
+    const Lane::Doing doing = member.lane->doing();
+    return !doing.over && doing.wait == Lane::Wait::none && std::string_view(doing.function) == "finish";
+  });
 }
 
 std::string stall_report(Run& run, const std::vector<Member>& members, double seconds) {

@@ -18,6 +18,12 @@ struct Member {
 /// Calls of all threads together: unchanged means no progress.
 std::uint64_t calls_of(const std::vector<Member>& members);
 
+/// How many times longer than other calls a block's finish may take: methods do their work there when all data have come.
+inline constexpr double kFinishing = 60.0;
+
+/// Whether a thread is in a block's finish.
+bool in_finish(const std::vector<Member>& members);
+
 /// Why nothing goes on: "dft waits for 1024 samples of adc.out, 0 are there; thread 2 in process of block 'adc' for 10 s".
 std::string stall_report(Run& run, const std::vector<Member>& members, double seconds);
 

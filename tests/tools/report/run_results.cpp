@@ -242,6 +242,26 @@ ordered_json response_record(int outputs, int inputs) {
   return record;
 }
 
+namespace {
+
+/// Two bands of three lines each; curves of four points.
+ordered_json noise_variances() {
+  ordered_json record{
+      {"type", "noise_variances"},
+      {"attributes", {{"bands", {"0.1 to 5 Hz", "5 to 100 Hz"}}, {"input_name", "voltage"}, {"output_name", "current"}}}};
+  ordered_json& arrays = record["arrays"];
+  for (const char* name : {"first", "second", "pooled"}) {
+    arrays[std::string("input_") + name] = array_of("V", {2}, {0.7, 0.5});
+    arrays[std::string("output_") + name] = array_of("A", {2}, {0.2, 0.1});
+  }
+  arrays["band"] = array_of("", {6}, {0, 0, 0, 1, 1, 1});
+  arrays["curve_input"] = array_of("V^2", {6, 4}, list(24, [](int n) { return 0.3 * (n % 4); }));
+  arrays["curve_output"] = array_of("A^2", {6, 4}, list(24, [](int n) { return 0.02 * (3 - n % 4) * (1 + n / 8); }));
+  return record;
+}
+
+}  // namespace
+
 ordered_json results_of_all_types() {
   ordered_json results;
   results["response"] = response_record(1, 1);
@@ -256,6 +276,7 @@ ordered_json results_of_all_types() {
   results["left"] = residual();
   results["white"] = whiteness();
   results["gains"] = sweep();
+  results["noise"] = noise_variances();
   results["controller"] = {
       {"type", "controller"},
       {"attributes", {{"sample_time", 0.001}, {"accepted", false}, {"reason", "phase margin 21 degrees"}}},

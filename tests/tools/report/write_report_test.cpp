@@ -33,7 +33,7 @@ TEST_CASE("report: every record type has its section, figures and files") {
   const Folder folder;
   folder.write("result.json", test::result_with(test::results_of_all_types()).dump());
   const WrittenReport report = written(folder);
-  CHECK(report.records == 16);
+  CHECK(report.records == 17);
   const std::string page = folder.read("report.html");
   for (const char* text : {"id=\"response\"",
                            "id=\"matrix\"",
@@ -53,6 +53,8 @@ TEST_CASE("report: every record type has its section, figures and files") {
                            "Cost 120, expected 76 ± 8.72: 5.05 standard deviations too much",
                            "Convention: continuous in time.",
                            "0.9804 to 1.0196",
+                           "0.1 to 5 Hz",
+                           "without scatter all of them pass through the true variances",
                            "something_new",
                            "in 3 runs",
                            "only 6 periods: measure 12"}) {

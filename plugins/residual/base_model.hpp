@@ -23,8 +23,9 @@ class BaseModel {
   /// What is declared beside the parameters (hold, delay, which input), in words.
   virtual std::vector<std::string> conventions() const = 0;
 
-  /// Parameters near the data, from which a fit sets out. Errors: data that this model can't describe at all.
-  virtual Expected<Eigen::VectorXd> start(std::span<const Experiment> experiments) const = 0;
+  /// Parameters near the data, from which a fit sets out: of all experiments together, and of each. Errors: data that this model
+  /// can't describe at all.
+  virtual Expected<std::vector<Eigen::VectorXd>> starts(std::span<const Experiment> experiments) const = 0;
   /// The steps and levels that effects start from.
   virtual Scales scales(std::span<const Experiment> experiments, const Eigen::VectorXd& values) const = 0;
   /// The spectrum of the output at the lines of the experiment. Values that are not finite: parameters outside of the domain.

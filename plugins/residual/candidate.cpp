@@ -82,8 +82,8 @@ Levels Levels::of(double alpha, double share, std::size_t class_tests, std::size
 
 double Candidate::merit() const { return select_gain - 2.0 * static_cast<double>(effect->parameters().size()); }
 
-Candidate try_effect(const Effect& effect, const Examined& base, const Scales& scales, std::span<const Experiment> fitted,
-                     const Experiment& select, const Levels& levels) {
+Candidate try_effect(const Effect& effect, const Examined& base, const std::vector<Eigen::VectorXd>& base_starts,
+                     const Scales& scales, std::span<const Experiment> fitted, const Experiment& select, const Levels& levels) {
   Candidate c;
   c.name = effect.name();
   c.effect = &effect;
@@ -91,10 +91,14 @@ Candidate try_effect(const Effect& effect, const Examined& base, const Scales& s
   JointModel model = base.fit.model;
   model.effects.push_back(&effect);
   std::vector<Eigen::VectorXd> starts;
-  for (const Eigen::VectorXd& own : effect.starts(scales)) {
-    Eigen::VectorXd start(base.fit.values.size() + own.size());
-    start << base.fit.values, own;
-    starts.push_back(std::move(start));
+  std::vector<Eigen::VectorXd> from = base_starts;
+  from.push_back(base.fit.values);
+  for (const Eigen::VectorXd& values : from) {
+    for (const Eigen::VectorXd& own : effect.starts(scales)) {
+      Eigen::VectorXd start(values.size() + own.size());
+      start << values, own;
+      starts.push_back(std::move(start));
+    }
   }
   auto fitted_model = fit(model, fitted, starts);
   if (!fitted_model) {

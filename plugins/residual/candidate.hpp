@@ -58,9 +58,10 @@ struct Candidate {
   double merit() const;
 };
 
-/// The effect tried beside the base model, judged against it.
-Candidate try_effect(const Effect& effect, const Examined& base, const Scales& scales, std::span<const Experiment> fitted,
-                     const Experiment& select, const Levels& levels);
+/// The effect tried beside the base model, judged against it; the fit sets out from the base's own fit and from its starts, which
+/// a missing effect has pulled less.
+Candidate try_effect(const Effect& effect, const Examined& base, const std::vector<Eigen::VectorXd>& base_starts,
+                     const Scales& scales, std::span<const Experiment> fitted, const Experiment& select, const Levels& levels);
 
 /// How many standard deviations `better` stands above `other` on the selecting record: the sum of the differences of the
 /// lines' squares over sqrt(lines) times their standard deviation. Reference: Q. H. Vuong, Likelihood ratio tests for model

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bodeflow/numerics/levenberg_marquardt.hpp>
 #include <cmath>
+#include <limits>
 
 namespace bodeflow::residual {
 namespace {
@@ -13,6 +14,7 @@ constexpr double kStep = 1e-5;
 constexpr numerics::LeastSquaresLimits kLimits{40, 1e-6};
 // Directions of the parameters whose information is below this part of the greatest count as not determined.
 constexpr double kLeastInformation = 1e-12;
+constexpr double kFarthest = 30.0;
 
 Eigen::VectorXd coordinates(const std::vector<Parameter>& parameters, const Eigen::VectorXd& values) {
   Eigen::VectorXd c(values.size());
@@ -36,7 +38,17 @@ class Problem {
 
   Eigen::Index rows() const { return rows_; }
 
+  /// Parameters of the base model beyond kFarthest times their start are outside of the domain: a wrong model can pull them away
+  /// without end.
+  void bound_base(const Eigen::VectorXd& start) {
+    bounds_ = start.head(static_cast<Eigen::Index>(model_.base->parameters().size()));
+  }
+
   Eigen::VectorXd residual(const Eigen::VectorXd& coordinates) const {
+    for (Eigen::Index i = 0; i < bounds_.size(); ++i) {
+      if (parameters_[static_cast<std::size_t>(i)].logarithmic && !(std::abs(coordinates[i] - bounds_[i]) < std::log(kFarthest)))
+        return Eigen::VectorXd::Constant(rows_, std::numeric_limits<double>::quiet_NaN());
+    }
     const Eigen::VectorXd values = values_at(parameters_, coordinates);
     Eigen::VectorXd r(rows_);
     Eigen::Index at = 0;
@@ -63,6 +75,7 @@ class Problem {
   const JointModel& model_;
   std::span<const Experiment> experiments_;
   std::vector<Parameter> parameters_;
+  Eigen::VectorXd bounds_;
   Eigen::Index rows_ = 0;
 };
 
@@ -129,29 +142,29 @@ Eigen::VectorXd whitened(const Experiment& e, const Eigen::VectorXcd& predicted)
 
 Expected<Fit> fit(const JointModel& model, std::span<const Experiment> experiments, const std::vector<Eigen::VectorXd>& starts) {
   const std::vector<Parameter> parameters = model.parameters();
-  const Problem problem(model, experiments);
+  Problem problem(model, experiments);
   const numerics::LeastSquaresProblem least_squares{
       problem.rows(), [&problem](const Eigen::VectorXd& c, Eigen::VectorXd& r) { r = problem.residual(c); },
       [&problem](const Eigen::VectorXd& c, Eigen::MatrixXd& j) { j = problem.jacobian(c); }};
-  numerics::LeastSquaresFit best;
-  std::string reason = "no start is given";
-  bool found = false;
+  Eigen::VectorXd best;
+  double least = std::numeric_limits<double>::infinity();
   for (const Eigen::VectorXd& start : starts) {
-    auto tried = numerics::levenberg_marquardt(least_squares, coordinates(parameters, start), kLimits);
-    if (!tried) {
-      reason = tried.error().text;
-    } else if (!found || tried->cost < best.cost) {
-      best = std::move(*tried);
-      found = true;
-    }
+    const Eigen::VectorXd at = coordinates(parameters, start);
+    const double cost = problem.residual(at).squaredNorm();
+    if (!(cost < least)) continue;
+    least = cost;
+    best = at;
   }
-  if (!found) return refused(reason);
+  if (best.size() == 0) return refused("the model can't be computed at any of the parameters to start from");
+  problem.bound_base(best);
+  const auto found = numerics::levenberg_marquardt(least_squares, best, kLimits);
+  if (!found) return tl::unexpected(found.error());
   Fit f;
   f.model = model;
-  f.values = values_at(parameters, best.parameters);
-  f.chi2 = best.cost;
-  f.converged = best.converged;
-  set_uncertainty(parameters, problem.jacobian(best.parameters), f);
+  f.values = values_at(parameters, found->parameters);
+  f.chi2 = found->cost;
+  f.converged = found->converged;
+  set_uncertainty(parameters, found->jacobian, f);
   return f;
 }
 

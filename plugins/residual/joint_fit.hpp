@@ -40,8 +40,8 @@ struct Fit {
   bool converged = false;
 };
 
-/// The maximum-likelihood fit to the experiments from the best of the starts: least squares of the whitened residuals over all
-/// their lines, unexcited ones included, as the model predicts nothing there unless an effect makes it.
+/// The maximum-likelihood fit to the experiments from that start which is nearest to the data: least squares of the whitened
+/// residuals over all their lines, unexcited ones included, as the model predicts nothing there unless an effect makes it.
 /// Errors: no start at which the model can be computed.
 Expected<Fit> fit(const JointModel& model, std::span<const Experiment> experiments, const std::vector<Eigen::VectorXd>& starts);
 

@@ -178,6 +178,16 @@ Expected<Eigen::VectorXd> MotorStandstill::start(std::span<const Experiment> exp
   return Eigen::VectorXd(Eigen::Vector4d(rs / last + 0.5 * middle, 0.1 * middle, 5.0, last));
 }
 
+Expected<std::vector<Eigen::VectorXd>> MotorStandstill::starts(std::span<const Experiment> experiments) const {
+  std::vector<Eigen::VectorXd> all;
+  const auto together = start(experiments);
+  if (!together) return tl::unexpected(together.error());
+  all.push_back(*together);
+  for (const Experiment& e : experiments)
+    if (const auto alone = start({&e, 1}); alone && experiments.size() > 1) all.push_back(*alone);
+  return all;
+}
+
 Scales MotorStandstill::scales(std::span<const Experiment> experiments, const Eigen::VectorXd& values) const {
   const TCircuit c = t_circuit(values);
   Scales s;

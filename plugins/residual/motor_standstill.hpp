@@ -22,7 +22,7 @@ class MotorStandstill final : public BaseModel {
   std::string name() const override { return "motor_standstill"; }
   std::vector<Parameter> parameters() const override;
   std::vector<std::string> conventions() const override;
-  Expected<Eigen::VectorXd> start(std::span<const Experiment> experiments) const override;
+  Expected<std::vector<Eigen::VectorXd>> starts(std::span<const Experiment> experiments) const override;
   Scales scales(std::span<const Experiment> experiments, const Eigen::VectorXd& values) const override;
   Eigen::VectorXcd steady_state(const Experiment& experiment, const Eigen::VectorXd& values,
                                 const Extension& extension) const override;
@@ -32,6 +32,7 @@ class MotorStandstill final : public BaseModel {
   std::complex<double> response(const Eigen::Vector4d& values, double frequency_hz, double sample_time_s, double delay_s) const;
 
  private:
+  Expected<Eigen::VectorXd> start(std::span<const Experiment> experiments) const;
   bool held() const { return input_ != MotorInput::terminal; }
   double declared_delay_s() const { return input_ == MotorInput::command ? computation_delay_s_ : 0.0; }
   Eigen::VectorXd simulate_experiment(const Experiment& experiment, const Eigen::VectorXd& values,

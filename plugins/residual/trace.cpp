@@ -98,16 +98,16 @@ const char* word(Verdict verdict) {
 
 Expected<Trace> trace(const BaseModel& base, const Catalogue& catalogue, const TraceData& data, const TraceSettings& settings) {
   if (auto sound = check(data); !sound) return tl::unexpected(sound.error());
-  const auto start = base.start(data.fit);
-  if (!start) return tl::unexpected(start.error());
-  auto fitted = fit(JointModel{&base, {}}, data.fit, {*start});
+  const auto starts = base.starts(data.fit);
+  if (!starts) return tl::unexpected(starts.error());
+  auto fitted = fit(JointModel{&base, {}}, data.fit, *starts);
   if (!fitted) return refused("the base model could not be fitted: " + fitted.error().text);
   Trace t;
   t.base = examine(std::move(*fitted), data.fit, data.select);
   t.levels = Levels::of(settings.alpha, settings.share, t.base.test_count(), catalogue.size());
   t.scales = base.scales(data.fit, t.base.fit.values);
   for (const auto& effect : catalogue)
-    t.candidates.push_back(try_effect(*effect, t.base, t.scales, data.fit, data.select, t.levels));
+    t.candidates.push_back(try_effect(*effect, t.base, *starts, t.scales, data.fit, data.select, t.levels));
   rank(t.candidates);
   if (!t.candidates.empty() && t.candidates.front().explains) {
     t.found = 0;

@@ -11,7 +11,10 @@ std::vector<Parameter> DeadTime::parameters() const {
 }
 
 std::vector<Eigen::VectorXd> DeadTime::starts(const Scales& scales) const {
-  return {Eigen::Vector2d(0.2 * scales.effort, 0.01 * scales.flow)};
+  std::vector<Eigen::VectorXd> starts;
+  for (const double share : {0.05, 0.1, 0.2, 0.3, 0.45, 0.6})
+    starts.push_back(Eigen::Vector2d(share * scales.effort, 0.01 * scales.flow));
+  return starts;
 }
 
 std::string DeadTime::sentence(const Eigen::VectorXd& value, const Eigen::VectorXd& std, const Scales&) const {

@@ -5,21 +5,30 @@
 #include "records/signals.hpp"
 
 namespace bodeflow::residual {
+namespace {
+
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
+
+}  // namespace
 
 std::vector<Parameter> Saturation::parameters() const {
-  constexpr double kNoBound = std::numeric_limits<double>::infinity();
-  return {{"saturation_cubic", "1/(V s)^2", 0.0, kNoBound, false, 1.0},
-          {"saturation_bend", "1/(V s)^2", -kNoBound, kNoBound, false, 1.0}};
+  return {{"saturation_a", "1/(V s)^2", 0.0, kNoBound, true, 1.0},
+          {"saturation_b", "1/(V s)^4", 0.0, kNoBound, true, 1.0},
+          {"saturation_c", "1/(V s)^4", 0.0, kNoBound, true, 1.0}};
 }
 
 std::vector<Eigen::VectorXd> Saturation::starts(const Scales& scales) const {
   const double square = scales.stored * scales.stored;
-  return {Eigen::Vector2d(1.0 / square, 0.0)};
+  std::vector<Eigen::VectorXd> starts;
+  for (const double rise : {0.1, 0.4, 1.6})
+    starts.push_back(Eigen::Vector3d(rise / square, rise / (square * square), 0.1 / (square * square)));
+  return starts;
 }
 
 Law Saturation::extra_stored(const double* p, double flux) const {
-  const double square = flux * flux, bend = p[1] * square, part = 1.0 / (1.0 + bend), rise = p[0] * square * part;
-  return {rise * flux, rise * (3.0 + bend) * part};
+  const double x = flux * flux, rise = x * (p[0] + x * p[1]), part = 1.0 / (1.0 + p[2] * x * x);
+  const double slope = x * (2.0 * p[0] + x * (4.0 * p[1] - 2.0 * p[0] * p[2] * x)) * part * part;  // of the fraction, times flux
+  return {flux * rise * part, rise * part + slope};
 }
 
 std::string Saturation::sentence(const Eigen::VectorXd& value, const Eigen::VectorXd&, const Scales& scales) const {

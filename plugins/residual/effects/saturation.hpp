@@ -4,9 +4,9 @@
 
 namespace bodeflow::residual {
 
-/// Saturation of the main flux: the magnetising current is i = psi (1 + a psi^2 / (1 + c psi^2)) / Lm: linear for small flux,
-/// then with a third power, which c > 0 bends down to the incremental inductance Lm c / (a + c) far beyond the knee, and c < 0
-/// bends up.
+/// Saturation of the main flux: the magnetising current is i = psi (1 + (a psi^2 + b psi^4) / (1 + c psi^4)) / Lm, all of a, b, c
+/// positive: linear for small flux, then with a third and a fifth power, up to the incremental inductance Lm / (1 + b / c) far
+/// beyond the knee. It can be told from a measurement how far the inductance falls, hardly what each of the three is.
 class Saturation final : public Effect {
  public:
   std::string name() const override { return "saturation"; }

@@ -30,7 +30,7 @@ void ComparisonBlock::describe(Describe& d) {
       .doc("highest order of the noise model; 0: white noise, the prediction is the simulation");
   d.parameter("offset", true).doc("estimate a constant offset of the output beside the initial state");
   d.parameter("confidence", 0.99).unit("1").above(0.0).below(1.0).doc("of the bands of the correlations");
-  d.parameter("shown", std::int64_t{2000}).range(2, 1e6).doc("samples of measured, simulated and predicted output in the record");
+  d.parameter("shown", std::int64_t{500}).range(2, 1e6).doc("samples of measured, simulated and predicted output in the record");
   d.parameter("limit", std::int64_t{16'777'216}).range(16, 1e9).doc("most samples; about 100 bytes of memory each and model");
 }
 

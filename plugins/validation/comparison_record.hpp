@@ -24,7 +24,7 @@ struct Comparison {
   Measured data;
   records::Signals input_signal, output_signal;
   std::vector<Judgement> judgements;  ///< one a model, or none
-  Eigen::Index shown = 2000;          ///< samples of the signals that the record holds
+  Eigen::Index shown = 500;          ///< samples of the signals that the record holds
 };
 
 /// What the models are, side by side: parameters, poles, responses, and a warning where they can't be compared as independent

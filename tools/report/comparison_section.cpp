@@ -135,6 +135,10 @@ Chart correlation_chart(const Compared& c, std::size_t m, const char* array, con
   panel.y.title = axis;
   panel.height = 220.0;
   Series series = curve("", 0, lags, c.row(array, m));
+  if (lags.front() == 0.0) {  // where it is 1 by definition
+    series.x.erase(series.x.begin());
+    series.y.erase(series.y.begin());
+  }
   series.markers = lags.size() <= kMostMarkers;
   const double bound = c.of(band, m);
   Series chance = curve("", 5, {lags.front(), lags.back()}, {0.0, 0.0});

@@ -94,6 +94,17 @@ TEST_CASE("every repetition of a phase has noise of its own, and an until that i
   CHECK(hashes["again.noise.out"] != hashes["again@2.noise.out"]);
 }
 
+TEST_CASE("a seed on the command line is said to change nothing in a phase that sweeps the seed") {
+  const Folder folder;
+  folder.write("graph.yaml",
+               "bodeflow: 1\nphases:\n" + measurement("many", "    sweep: {seed: 1..2}\n") + measurement("one", ""));
+  const auto ended = run_bodeflow({"check", "graph.yaml", "--seed", "3"}, folder.path());
+  INFO(ended.err);
+  CHECK(ended.exit_code == 0);
+  CHECK(ended.err.find("--seed changes nothing in phase 'many', which sweeps the seed itself") != std::string::npos);
+  CHECK(ended.err.find("phase 'one'") == std::string::npos);
+}
+
 TEST_CASE("rerun compares every run of a sweep") {
   const Folder folder;
   folder.write("graph.yaml", "bodeflow: 1\nphases:\n" + measurement("many", "    sweep: {seed: 1..2}\n"));

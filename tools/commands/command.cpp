@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -67,6 +68,10 @@ tl::expected<graph::Graph, int> GraphOptions::load(const Registry& registry) con
   }
   auto graph = graph::load(file, options, registry);
   if (!graph) return tl::unexpected(reject(graph.error()));
+  if (options.seed)
+    for (const graph::Phase& phase : graph->phases)
+      if (std::any_of(phase.sweep.begin(), phase.sweep.end(), [](const graph::SweepAxis& axis) { return axis.path == "seed"; }))
+        say_warning("--seed changes nothing in phase '" + phase.name + "', which sweeps the seed itself");
   return std::move(*graph);
 }
 

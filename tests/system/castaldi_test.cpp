@@ -45,7 +45,7 @@ TEST_CASE("the standstill graph identifies the motor from both bands, within its
   CHECK(with < number(motor, "parameters", 3));
 }
 
-TEST_CASE("the amplitude graph stops below the level at which saturation shows") {
+TEST_CASE("the amplitude graph stops below the level at which saturation shows", "[long]") {
   const Folder folder;
   const Json all = result(folder, "amplitude.yaml");
   const Json& linearity = all["choice.linearity"];

@@ -66,7 +66,7 @@ void add_fits(Page& page, const Compared& c) {
   number("FPE", "fpe", 4);
   number("AIC", "aic", 6);
   table.rows.push_back(row_of(c, "Noise model", [&](std::size_t m) { return c.record.text_at("noise_models", m, "–"); }));
-  table.rows.push_back(row_of(c, "Probability that what it leaves is white",
+  table.rows.push_back(row_of(c, "Probability of as much correlation in white noise",
                               [&](std::size_t m) { return probability_text(c.of("whiteness_probability", m)); }));
   table.rows.push_back(row_of(c, "Lags at which the residual depends on the input",
                               [&](std::size_t m) { return fmt::format("{:.0f} of {}", c.of("cross_outside", m), lags + 1); }));

@@ -25,11 +25,15 @@ bool add_monte_carlo(Page& page, const Record& record) {
   const Array* truth = list_of(record, "truth", count);
   const Array* published_mean = list_of(record, "published_mean", count);
   const Array* published_std = list_of(record, "published_std", count);
+  const Array* predicted = list_of(record, "predicted_std", count);
+  const Array* coverage = list_of(record, "coverage", count);
   const double runs = record.number("runs");
   add_attributes(page, record, {"quantity_names", "quantity_units"});
 
   Table table{"Over the runs", {{"Quantity", false}, {"Mean"}, {"std"}}, {}};
+  if (predicted != nullptr) table.columns.push_back({"std that the runs state"});
   if (truth != nullptr) table.columns.insert(table.columns.end(), {{"Truth"}, {"Bias"}, {"Bias / its std"}});
+  if (coverage != nullptr) table.columns.push_back({"Truth in the 95 % interval"});
   if (published_mean != nullptr) table.columns.push_back({"Published mean"});
   if (published_std != nullptr) table.columns.push_back({"Published std"});
   for (std::size_t n = 0; n < std::min(count, kMostRows); ++n) {
@@ -37,10 +41,12 @@ bool add_monte_carlo(Page& page, const Record& record) {
     const double s = deviation == nullptr ? kNaN : deviation->re[n];
     std::vector<std::string> row{with_unit(record.text_at("quantity_names", n, fmt::format("quantity {}", n + 1)), unit),
                                  shown(mean->re[n], 6), shown(s, 3)};
+    if (predicted != nullptr) row.push_back(shown(predicted->re[n], 3));
     if (truth != nullptr) {
       const double bias = mean->re[n] - truth->re[n];
       row.insert(row.end(), {shown(truth->re[n], 6), shown(bias, 3), shown(bias / (s / std::sqrt(runs)), 3)});
     }
+    if (coverage != nullptr) row.push_back(percent(coverage->re[n]));
     if (published_mean != nullptr) row.push_back(shown(published_mean->re[n], 6));
     if (published_std != nullptr) row.push_back(shown(published_std->re[n], 3));
     table.rows.push_back(std::move(row));

@@ -112,8 +112,9 @@ ordered_json discrete_model() {
 ordered_json monte_carlo() {
   ordered_json record{{"type", "monte_carlo"},
                       {"attributes", {{"runs", 100}, {"seed", 1}, {"quantity_names", {"inertia", "stiffness"}}}}};
-  for (const char* name : {"mean", "std", "truth", "published_mean", "published_std"})
+  for (const char* name : {"mean", "std", "truth", "published_mean", "published_std", "predicted_std"})
     record["arrays"][name] = array_of("", {2}, {0.0012, 512.0});
+  record["arrays"]["coverage"] = array_of("", {2}, {0.94, nullptr});
   return record;
 }
 

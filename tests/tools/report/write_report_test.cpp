@@ -41,6 +41,8 @@ TEST_CASE("report: every record type has its section, figures and files") {
                            "auto-spectra",
                            "Poles and zeros",
                            "Published mean",
+                           "Truth in the 95 % interval",
+                           "94 %",
                            "Not accepted: phase margin 21 degrees",
                            "The missing effect is named",
                            "Delay 8×10⁻⁴ s",

@@ -16,6 +16,7 @@ namespace {
 constexpr std::int64_t kHighestOrder = 64;
 constexpr std::int64_t kMostSamples = std::int64_t{1} << 30;
 constexpr std::int64_t kMostLags = 10'000;
+constexpr double kLeastRatio = 1e-12;  // beyond it or its inverse one of the noises is lost in rounding
 
 std::optional<double> number_or_auto(const std::string& name, const std::string& text) {
   if (text == "auto") return {};
@@ -34,7 +35,8 @@ std::optional<Eigen::Index> read_order(const std::string& text) {
 
 std::optional<double> read_ratio(const std::string& text) {
   const auto value = number_or_auto("ratio", text);
-  if (value && !(*value > 0.0 && std::isfinite(*value))) fail("ratio: '" + text + "'; allowed: above 0, or auto");
+  if (value && !(*value >= kLeastRatio && *value <= 1.0 / kLeastRatio))
+    fail("ratio: '" + text + "'; allowed: 1e-12 to 1e12, or auto");
   return value;
 }
 

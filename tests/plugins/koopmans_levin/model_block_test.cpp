@@ -279,7 +279,7 @@ TEST_CASE("koopmans_levin.model: refuses by name what it cannot use") {
   };
   CHECK(refusal({{"order", "two"}}) == "order: 'two' is not a number; allowed: a number, or auto");
   CHECK(refusal({{"order", "2.5"}}) == "order: '2.5'; allowed: 1 to 64, or auto");
-  CHECK(refusal({{"ratio", "0"}}) == "ratio: '0'; allowed: above 0, or auto");
+  CHECK(refusal({{"ratio", "0"}}) == "ratio: '0'; allowed: 1e-12 to 1e12, or auto");
   CHECK(refusal({{"ratio", "6"}, {"noise_band", "2:3"}}) ==
         "ratio is given, so output_noise and noise_band have no use: leave them out, or set ratio: auto");
   CHECK(refusal({{"order", "2"}, {"ratio", "6"}, {"route", "time_domain"}, {"band", "0:1"}}) ==

@@ -150,6 +150,9 @@ Expected<Experiment> experiment_of(const records::Recording& recording, const st
                    " below the Nyquist frequency; allowed: up to 0.8 of it, sample faster");
   }
   const Spectrum s = spectrum_of(y, e.periods, lines, bin_hz);
+  if (!(s.between_power.mean() > kRounding * kRounding * s.lines.cwiseAbs2().maxCoeff())) {
+    return refused("output '" + e.output_name + "' holds no noise between the lines, so there is nothing to judge a residual by");
+  }
   auto floor = NoiseFloor::from_bins(s.between_hz, s.between_power);
   if (!floor) return refused("output '" + e.output_name + "': " + floor.error().text);
   e.floor = *floor;

@@ -25,7 +25,7 @@ struct TraceSettings {
   double share = 0.97;  ///< part of what is missing that a named cause explains
 };
 
-/// What a base model lacks.
+/// What a base model lacks. Refers to the base model and to the effects of the catalogue, which have to outlive it.
 struct Trace {
   Verdict verdict = Verdict::none;
   Levels levels;

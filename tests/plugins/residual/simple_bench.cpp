@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-namespace bodeflow::residual::test {
+namespace bodeflow::residual::bench {
 namespace {
 
 constexpr std::int64_t kPeriod = 4096;
-constexpr int kSteps = 40;  // of a sample
+constexpr int kSteps = 20;  // of a sample
 
 class Motor {
  public:
@@ -59,7 +59,8 @@ Eigen::VectorXd multisine(double amplitude, numerics::Random& random) {
   for (const std::int64_t k : test_lines()) {
     const double phase = 2.0 * std::numbers::pi * random.uniform();
     for (std::int64_t n = 0; n < kPeriod; ++n)
-      u[n] += amplitude * std::cos(2.0 * std::numbers::pi * static_cast<double>(k * n % kPeriod) / static_cast<double>(kPeriod) + phase);
+      u[n] += amplitude *
+              std::cos(2.0 * std::numbers::pi * static_cast<double>(k * n % kPeriod) / static_cast<double>(kPeriod) + phase);
   }
   return u;
 }
@@ -102,4 +103,4 @@ records::Recording record(const SimpleBench& bench, double amplitude, std::uint6
   return r;
 }
 
-}  // namespace bodeflow::residual::test
+}  // namespace bodeflow::residual::bench

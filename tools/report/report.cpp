@@ -127,9 +127,9 @@ tl::expected<WrittenReport, std::string> write_report(const ReportOptions& optio
   Page page;
   const auto warnings = warnings_of(*run);
   add_warnings(page, warnings);
-  add_what_was_done(page, *run, registry);
   add_records(page, *run);
   add_streams(page, *run, options.progress);
+  add_what_was_done(page, *run, registry);
   add_provenance(page, *run);
   const Markup header = page_header(*run);
   const std::string title = run->title.empty() ? run->directory.filename().string() : run->title;

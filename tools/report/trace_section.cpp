@@ -225,6 +225,7 @@ bool add_trace(Page& page, const Record& record) {
   add_attributes(page, record,
                  {"verdict",
                   "finding",
+                  "conventions",
                   "effects",
                   "error_before",
                   "error_after",

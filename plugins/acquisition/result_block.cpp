@@ -14,7 +14,8 @@ void ResultBlock::describe(Describe& d) {
       "file holds as null is NaN.");
   d.message_out(out).doc("the record");
   d.required<File>("file").doc("a run directory, or its result.json");
-  d.parameter("name", "").doc("the result's name, such as identify; default: the only one there is (of `type`), or of several identify");
+  d.parameter("name", "")
+      .doc("the result's name, such as identify; default: the only one there is (of `type`), or of several identify");
   d.parameter("type", "").doc("the type that it must have, such as model; default: any");
 }
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "repetition_checks.hpp"
 #include "records.hpp"
+#include "repetition_checks.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "averaging_dft_settings.hpp"
-#include "response_record.hpp"
 #include "records.hpp"
+#include "response_record.hpp"
 
 namespace bodeflow::spectrum {
 namespace {

@@ -148,8 +148,7 @@ TEST_CASE("sensors: bad hidden properties are refused by name") {
     start(sensor, stream("A"));
     return failure_of([&] { sensor.receive(record, 0); });
   };
-  CHECK(refusal(properties().set("current_delay", -1e-3)) ==
-        "property current_delay = -0.001, allowed: 0 to 100");
+  CHECK(refusal(properties().set("current_delay", -1e-3)) == "property current_delay = -0.001, allowed: 0 to 100");
   CHECK(refusal(properties().set("current_lag", "much")) == "property current_lag is not a number");
   CHECK(refusal(properties().set("current_noise", std::numeric_limits<double>::quiet_NaN())) ==
         "property current_noise = nan, allowed: 0 to 1e+06");

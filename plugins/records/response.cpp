@@ -74,6 +74,8 @@ void read_attributes(const RecordView& record, ResponseData& d) {
   d.dropped_samples = record.integer("dropped_samples");
   d.sample_rate_hz = record.number("sample_rate");
   d.degrees_of_freedom = record.number("degrees_of_freedom");
+  d.correlated_lines = std::max<std::int64_t>(0, record.integer("correlated_lines").value_or(0));
+  if (const auto largest = record.numbers("input_amplitude")) d.input_amplitude.assign(largest->begin(), largest->end());
   if (const auto warnings = record.texts("warnings")) d.warnings.assign(warnings->begin(), warnings->end());
 }
 
@@ -145,6 +147,8 @@ RecordBuilder write_response(const ResponseData& d) {
   r.set("output_names", d.output_names);
   r.set("response_units", d.response_units);
   r.set("warnings", d.warnings);
+  r.set("correlated_lines", d.correlated_lines);
+  if (!d.input_amplitude.empty()) r.set("input_amplitude", d.input_amplitude);
   const bool certain = d.variance.size() != 0;
   if (certain) r.set("confidence", kConfidence);
   if (certain && d.degrees_of_freedom) r.set("degrees_of_freedom", *d.degrees_of_freedom);

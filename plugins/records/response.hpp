@@ -32,6 +32,10 @@ struct ResponseData {
   std::optional<double> sample_rate_hz;
   /// nu of all lines; nothing where it is not known, which counts as infinitely many.
   std::optional<double> degrees_of_freedom;
+  /// How many lines before and behind a line share data with it, so that their errors are correlated; 0: none, all are
+  /// independent.
+  std::int64_t correlated_lines = 0;
+  std::vector<double> input_amplitude;  ///< largest |input| of the data, one an input; empty where it is not known
 
   Eigen::VectorXd frequency_hz;
   std::vector<std::int64_t> lines;  ///< line numbers, or empty

@@ -8,8 +8,8 @@
 #include "excitation_advice.hpp"
 #include "period_kernels.hpp"
 #include "period_selection.hpp"
-#include "response_checks.hpp"
 #include "records.hpp"
+#include "response_checks.hpp"
 #include "transient_removal.hpp"
 
 namespace bodeflow::spectrum {
@@ -131,6 +131,7 @@ void AveragingDftBlock::activate(const Activation& a) {
 void AveragingDftBlock::reset() {
   collector_->clear();
   parts_.clear();
+  measurement_.input_amplitude.assign(static_cast<std::size_t>(measurement_.layout.inputs), 0.0);
   position_ = filled_ = 0;
   experiment_ = used_ = sent_ = 0;
 }
@@ -174,6 +175,10 @@ void AveragingDftBlock::process(Io& io) {
     n += copy(io, n);
     if (filled_ < schedule_.period) break;
     filled_ = 0;
+    for (Eigen::Index j = 0; j < measurement_.layout.inputs; ++j) {
+      double& largest = measurement_.input_amplitude[static_cast<std::size_t>(j)];
+      largest = std::max(largest, frame_.col(j).cwiseAbs().maxCoeff());
+    }
     collector_->add(frame_);
     used_ += schedule_.period;
     const std::int64_t periods = collector_->periods();

@@ -209,6 +209,7 @@ void LocalPolynomialBlock::finish(Io& io) {
   from.samples = static_cast<std::int64_t>(samples_[0].front().size());
   const LineRange range = check_length(from.samples);
   for (std::size_t port = 0; port < 3; ++port) look_at(port, from);
+  for (const SampleWatch& watch : watches_[0]) from.input_amplitude.push_back(watch.amplitude());
   std::vector<std::int64_t> lines;
   for (std::int64_t k = range.first; k <= range.last; k += from.step) lines.push_back(k);
   const auto estimate = local_polynomial(spectra(from.samples), lines, from.settings);

@@ -87,6 +87,8 @@ RecordBuilder local_polynomial_record(const LocalPolynomialEstimate& e, const Lo
   d.realisations = 1;
   d.sample_rate_hz = from.sample_rate_hz;
   d.degrees_of_freedom = e.degrees_of_freedom;
+  d.correlated_lines = 2 * static_cast<std::int64_t>(from.settings.half_width) / from.step;
+  d.input_amplitude = from.input_amplitude;
   d.lines = e.lines;
   d.frequency_hz.resize(static_cast<Eigen::Index>(e.lines.size()));
   for (std::size_t k = 0; k < e.lines.size(); ++k) d.frequency_hz[static_cast<Eigen::Index>(k)] = frequency_of(e.lines[k], from);

@@ -15,8 +15,9 @@ struct LocalPolynomialOrigin {
   Signals references, inputs, outputs;  ///< no references: known input
   double sample_rate_hz = 1.0;
   std::int64_t samples = 0;
-  std::int64_t step = 1;              ///< from line to line of the estimate
-  std::vector<std::string> warnings;  ///< what the record says of them
+  std::int64_t step = 1;                ///< from line to line of the estimate
+  std::vector<double> input_amplitude;  ///< largest |u|, one an input
+  std::vector<std::string> warnings;    ///< what the record says of them
 };
 
 /// What spoils the estimate, each with what to do, behind the warnings that stand already: lines without excitation, resonances

@@ -175,6 +175,16 @@ class Merger {
     return same ? all_.front().*of : otherwise;
   }
 
+  // Where all experiments tell it.
+  void largest_input() {
+    merged_.input_amplitude.assign(all_.front().input_names.size(), 0.0);
+    for (const ResponseData& d : all_) {
+      if (d.input_amplitude.size() != merged_.input_amplitude.size()) return merged_.input_amplitude.clear();
+      for (std::size_t j = 0; j < d.input_amplitude.size(); ++j)
+        merged_.input_amplitude[j] = std::max(merged_.input_amplitude[j], d.input_amplitude[j]);
+    }
+  }
+
   void attributes(const std::vector<Group>& groups) {
     merged_.form = common(&ResponseData::form, std::string("merged"));
     merged_.method = "spectrum.merge";
@@ -186,6 +196,8 @@ class Merger {
     merged_.dropped_samples = sum(&ResponseData::dropped_samples);
     merged_.sample_rate_hz = common(&ResponseData::sample_rate_hz, std::optional<double>());
     merged_.period = common(&ResponseData::period, std::optional<std::int64_t>());
+    for (const ResponseData& d : all_) merged_.correlated_lines += d.correlated_lines;
+    largest_input();
     if (certain_ && std::isfinite(least_freedom_)) merged_.degrees_of_freedom = least_freedom_;
     const bool numbered_lines = std::all_of(all_.begin(), all_.end(), [](const ResponseData& d) { return !d.lines.empty(); });
     if (numbered_lines && merged_.period && merged_.sample_rate_hz) {

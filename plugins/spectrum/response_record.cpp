@@ -84,6 +84,8 @@ RecordBuilder response_record(const Estimate& e, const Levels& levels, const Mea
   r.set("response_units", units.ratios);
   r.set("confidence", from.confidence);
   r.set("degrees_of_freedom", e.degrees_of_freedom.minCoeff());
+  r.set("correlated_lines", std::int64_t{0});
+  r.set("input_amplitude", from.input_amplitude);
   r.set("warnings", from.warnings);
 
   const auto lines = static_cast<std::uint64_t>(e.lines.size());

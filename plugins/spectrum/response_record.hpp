@@ -15,13 +15,14 @@ namespace bodeflow::spectrum {
 struct Measurement {
   Form form = Form::errors_in_variables;
   Layout layout;
-  Rate rate;                          ///< samples per second
-  std::int64_t period = 0;            ///< samples
-  std::int64_t dropped_samples = 0;   ///< of periods skipped, between experiments, and of a period that was not complete
-  double confidence = 0.95;           ///< of the confidence circles
-  std::vector<std::string> names;     ///< of inputs, outputs, references
-  std::vector<std::string> units;     ///< likewise
-  std::vector<std::string> warnings;  ///< what spoils the result, each with what to do
+  Rate rate;                            ///< samples per second
+  std::int64_t period = 0;              ///< samples
+  std::int64_t dropped_samples = 0;     ///< of periods skipped, between experiments, and of a period that was not complete
+  double confidence = 0.95;             ///< of the confidence circles
+  std::vector<std::string> names;       ///< of inputs, outputs, references
+  std::vector<std::string> units;       ///< likewise
+  std::vector<double> input_amplitude;  ///< largest |u| of the averaged periods, one an input
+  std::vector<std::string> warnings;    ///< what spoils the result, each with what to do
 
   double line_hz() const { return rate.hz() / static_cast<double>(period); }
 };

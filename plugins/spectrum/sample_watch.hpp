@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -14,6 +16,8 @@ class SampleWatch {
 
   /// Samples taken.
   std::int64_t count() const { return count_; }
+  /// The largest magnitude of them; 0 for none.
+  double amplitude() const { return std::max(std::abs(greatest_.value), std::abs(least_.value)); }
   /// True while all samples were equal.
   bool constant() const { return count_ == 0 || greatest_.value == least_.value; }
   /// A sentence with what to do when the channel looks clipped, else "". It does when it comes to its greatest or least value at

@@ -177,10 +177,13 @@ void WelchBlock::process(Io& io) {
 }
 
 void WelchBlock::send(Io& io, std::uint64_t offset) {
-  WelchOrigin from{settings_, form_, inputs_, outputs_, {}};
+  WelchOrigin from{settings_, form_, inputs_, outputs_, {}, {}};
   for (std::size_t c = 0; c < watches_.size(); ++c) {
     const std::string name = channel(static_cast<Eigen::Index>(c));
-    if (c < inputs_.names.size() && watches_[c].constant()) fail(name + " is constant: it excites nothing");
+    if (c < inputs_.names.size()) {
+      if (watches_[c].constant()) fail(name + " is constant: it excites nothing");
+      from.input_amplitude.push_back(watches_[c].amplitude());
+    }
     if (std::string text = watches_[c].clipping(name); !text.empty()) from.warnings.push_back(std::move(text));
   }
   const auto estimate = welch_->estimate(form_, range_.first, range_.last);

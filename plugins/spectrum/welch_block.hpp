@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "band.hpp"
-#include "sample_watch.hpp"
 #include "records.hpp"
+#include "sample_watch.hpp"
 #include "welch.hpp"
 
 namespace bodeflow::spectrum {

@@ -87,6 +87,8 @@ RecordBuilder welch_record(const WelchEstimate& e, const WelchOrigin& from) {
   d.realisations = 1;
   d.sample_rate_hz = from.settings.sample_rate_hz;
   d.degrees_of_freedom = e.degrees_of_freedom;
+  d.correlated_lines = correlated_lines(from.settings.window);
+  d.input_amplitude = from.input_amplitude;
   d.lines = e.lines;
   d.frequency_hz.resize(static_cast<Eigen::Index>(e.lines.size()));
   for (Eigen::Index k = 0; k < d.frequency_hz.size(); ++k)

@@ -14,7 +14,8 @@ struct WelchOrigin {
   WelchSettings settings;
   WelchForm form = WelchForm::h1;
   Signals inputs, outputs;
-  std::vector<std::string> warnings;  ///< what the record says of them
+  std::vector<double> input_amplitude;  ///< largest |u|, one an input
+  std::vector<std::string> warnings;    ///< what the record says of them
 };
 
 /// "h1", "h2", "hv".

@@ -32,6 +32,11 @@ const std::vector<std::string>& window_names() {
   return names;
 }
 
+std::int64_t correlated_lines(const std::string& window) {
+  const auto found = std::find_if(table().begin(), table().end(), [&](const auto& entry) { return entry.first == window; });
+  return 2 * static_cast<std::int64_t>(found->second.size() - 1);
+}
+
 Eigen::VectorXd window(const std::string& name, Eigen::Index length) {
   const auto found = std::find_if(table().begin(), table().end(), [&](const auto& entry) { return entry.first == name; });
   Eigen::VectorXd w = Eigen::VectorXd::Zero(length);

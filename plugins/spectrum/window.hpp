@@ -22,6 +22,9 @@ Eigen::VectorXd window(const std::string& name, Eigen::Index length);
 /// The equivalent noise bandwidth in lines: N sum w^2 / (sum w)^2; rectangular 1, hann 1.5.
 double noise_bandwidth_lines(const Eigen::VectorXd& window);
 
+/// How many lines before and behind a line have noise in common with it: 2 M of a window of M cosine terms, 2 for hann.
+std::int64_t correlated_lines(const std::string& window);
+
 /// How many independent segments a mean over `count` segments, each `hop` samples after the one before, is worth:
 ///   count / (1 + 2 sum_{m=1}^{count-1} (1 - m/count) rho(m)^2),  rho(m) = sum_n w[n] w[n + m hop] / sum_n w[n]^2.
 /// Right for noise whose spectrum is flat over the bandwidth of the window.

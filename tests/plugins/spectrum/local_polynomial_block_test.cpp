@@ -1,5 +1,6 @@
 #include "spectrum/local_polynomial_block.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -50,6 +51,10 @@ TEST_CASE("local polynomial block: the record holds response, noise and transien
   CHECK(r.integer("samples") == 1000);
   CHECK(r.integer("half_width") == 6);
   CHECK(r.number("degrees_of_freedom") == 7.0);
+  CHECK(r.integer("correlated_lines") == 3);  // 12 lines of the record, each fourth is estimated
+  const auto samples = signals(1000);
+  const auto [least, greatest] = std::minmax_element(samples[0][0].begin(), samples[0][0].end());
+  CHECK(r.numbers("input_amplitude") == std::vector<double>{std::max(-*least, *greatest)});
   CHECK(warnings_of(r).empty());
   const auto frequency = r.array("frequency")->as<double>();
   REQUIRE(frequency.size() == 46);

@@ -56,6 +56,9 @@ TEST_CASE("welch block: the record holds response, coherence and densities") {
   CHECK(r.number("effective_averages") == Approx(80.0 / (1.0 + 2.0 / 36.0)).epsilon(0.002));
   CHECK(*r.number("degrees_of_freedom") == Approx(*r.number("effective_averages") - 1.0));
   CHECK(r.texts("response_units") == std::vector<std::string_view>{"rad/s/A", "rad/s/A"});
+  CHECK(r.integer("correlated_lines") == 2);
+  REQUIRE(r.numbers("input_amplitude"));
+  CHECK(r.numbers("input_amplitude")->size() == 1);
   CHECK(warnings_of(r).empty());
   const auto frequency = r.array("frequency")->as<double>();
   REQUIRE(frequency.size() == 26);

@@ -37,10 +37,11 @@ CostTest cost_test(const Spectra& spectra, const Fit& fit) {
   CostTest t;
   t.cost = fit.minimum.cost;
   t.degrees_of_freedom = 2.0 * spectra.equations() - static_cast<double>(fit.parameters());
-  const double f = 0.5 * t.degrees_of_freedom;
+  const double f = spectra.equations() - 0.5 * fit.inflation * static_cast<double>(fit.parameters());
   t.expected = std::isinf(nu) ? f : nu > 1.0 ? f * nu / (nu - 1.0) : std::numeric_limits<double>::infinity();
   if (!(nu > 2.0)) return t;
-  const double variance = std::isinf(nu) ? f : f * nu * nu * nu / ((nu - 1.0) * (nu - 1.0) * (nu - 2.0));
+  double variance = std::isinf(nu) ? f : f * nu * nu * nu / ((nu - 1.0) * (nu - 1.0) * (nu - 2.0));
+  if (fit.correlation.any()) variance *= fit.correlation.lines_of_one();
   t.deviation = std::sqrt(variance);
   const double shape = 2.0 * t.expected * t.expected / variance;
   t.probability = numerics::chi_squared_tail(t.cost * shape / t.expected, shape);
@@ -48,23 +49,28 @@ CostTest cost_test(const Spectra& spectra, const Fit& fit) {
 }
 
 Criteria criteria(const Spectra& spectra, const Fit& fit) {
-  const double equations = spectra.equations(), nu = spectra.degrees_of_freedom, n = static_cast<double>(fit.parameters());
+  const double equations = spectra.equations(), nu = spectra.degrees_of_freedom,
+               n = fit.inflation * static_cast<double>(fit.parameters());
   const double part = std::isinf(nu) || !(nu > 2.0) ? 1.0 : (nu - 2.0) / nu;
   const double fit_term =
       spectra.variance_known ? 2.0 * fit.minimum.cost * part : 2.0 * equations * std::log(fit.minimum.cost / equations);
   return {fit_term + 2.0 * n, fit_term + n * std::log(2.0 * equations)};
 }
 
-std::optional<Whiteness> whiteness(const Eigen::VectorXcd& errors) {
+std::optional<Whiteness> whiteness(const Eigen::VectorXcd& errors, Eigen::Index distance) {
   const Eigen::Index lines = errors.size();
   if (lines < kLeastLines || !(errors.cwiseAbs().minCoeff() > 0.0)) return std::nullopt;
   const Eigen::VectorXcd direction = errors.array() / errors.array().abs();
   Whiteness w;
-  w.lags = std::min(kMostLags, lines / 4);
-  for (Eigen::Index lag = 1; lag <= w.lags; ++lag) {
-    const Complex sum = direction.head(lines - lag).dot(direction.tail(lines - lag));
-    w.statistic += 2.0 * std::norm(sum) / static_cast<double>(lines - lag);
-  }
+  const auto power_at = [&](Eigen::Index lag) {
+    return std::norm(direction.head(lines - lag).dot(direction.tail(lines - lag))) / static_cast<double>(lines - lag);
+  };
+  const Eigen::Index step = distance + 1;
+  w.lags = std::min(kMostLags, lines / (4 * step));
+  if (w.lags == 0) return std::nullopt;
+  double lines_of_one = 1.0;
+  for (Eigen::Index lag = 1; lag <= distance; ++lag) lines_of_one += 2.0 * power_at(lag) / static_cast<double>(lines - lag);
+  for (Eigen::Index lag = 1; lag <= w.lags; ++lag) w.statistic += 2.0 * power_at(lag * step) / lines_of_one;
   w.probability = numerics::chi_squared_tail(w.statistic, 2.0 * static_cast<double>(w.lags));
   return w;
 }

@@ -23,10 +23,12 @@ struct CostTest {
 /// nu) distributed, so with P periods the expected cost is (P - 1)/(P - 2) (F - n/2), and its variance (P - 1)^3/((P - 2)^2 (P -
 /// 3)) (F - n/2). The probability takes the cost as gamma distributed with these moments. Reference: R. Pintelon, J. Schoukens,
 /// System Identification: A Frequency Domain Approach, 2nd ed. 2012, sections 9.12 and 10.3.
+/// With correlated lines n counts `inflation` times, and the variance is larger by LineCorrelation::lines_of_one.
 CostTest cost_test(const Spectra& spectra, const Fit& fit);
 
 /// AIC and MDL, the latter with ln(2F) for each parameter in place of 2: 2 cost + penalty, the cost less the part (nu/(nu - 2))
-/// that variances of nu degrees of freedom add to what a parameter wins. Without known variance 2F ln(cost/F) + penalty.
+/// that variances of nu degrees of freedom add to what a parameter wins; with correlated lines a parameter counts `inflation`
+/// times (K. Takeuchi 1976). Without known variance 2F ln(cost/F) + penalty.
 struct Criteria {
   double aic = 0.0, mdl = 0.0;
 };
@@ -40,9 +42,11 @@ struct Whiteness {
   double statistic = 0.0;    ///< sum over lags l = 1 .. L of 2/(K - l) |sum_k conj(d_k) d_(k+l)|^2; chi-squared with 2L degrees
   double probability = 1.0;  ///< of a greater one
 };
+/// distance: lines so far apart may be correlated. L multiples of the distance from which on they are not are taken then, and the
+/// statistic is divided by 1 + 2 sum_(l <= distance) |mean conj(d_k) d_(k+l)|^2 (M. S. Bartlett 1946).
 /// Nothing for fewer than 8 lines, or where an error is 0. The few dimensions that a fit takes away make the test a little
 /// timid where lines are few.
-std::optional<Whiteness> whiteness(const Eigen::VectorXcd& errors);
+std::optional<Whiteness> whiteness(const Eigen::VectorXcd& errors, Eigen::Index distance = 0);
 
 /// A pole and a zero that may be the same: their distance is within its uncertainty (95 %), and below 0.3 of the larger of them.
 struct Cancellation {

@@ -123,6 +123,14 @@ Eigen::MatrixXcd residuals(const Lines& lines, const Estimate& estimate) {
   return r;
 }
 
+Eigen::MatrixXcd error_directions(const Lines& lines, const Structure& structure, const Estimate& estimate) {
+  const Eigen::VectorXcd a = estimate.denominator().cwiseProduct(fixed_factor(lines, structure));
+  Eigen::MatrixXcd d(lines.size(), static_cast<Eigen::Index>(lines.channels.size()));
+  for (std::size_t i = 0; i < lines.channels.size(); ++i)
+    d.col(static_cast<Eigen::Index>(i)) = a.cwiseProduct(lines.channels[i].input);
+  return d.unaryExpr([](Complex x) { return x == 0.0 ? Complex(1.0) : x / std::abs(x); });
+}
+
 Eigen::MatrixXcd jacobian(const Lines& lines, const Estimate& estimate) {
   const Bases& bases = estimate.bases;
   const Eigen::Index size = lines.size(), poles = bases.denominator.size();

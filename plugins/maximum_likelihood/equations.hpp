@@ -67,6 +67,9 @@ Eigen::MatrixXd spread(const Lines& lines, const Estimate& estimate);
 /// whose squares sum up to the cost.
 Eigen::MatrixXcd residuals(const Lines& lines, const Estimate& estimate);
 
+/// The direction in the complex plane in which an error of G turns the residual of that line, lines x outputs.
+Eigen::MatrixXcd error_directions(const Lines& lines, const Structure& structure, const Estimate& estimate);
+
 /// Derivatives of the residuals, output by output, by theta and, in the last column, by the delay.
 Eigen::MatrixXcd jacobian(const Lines& lines, const Estimate& estimate);
 

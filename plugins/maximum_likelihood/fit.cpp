@@ -142,6 +142,8 @@ Expected<Fit> fit_model(const Spectra& spectra, const Structure& structure, int 
   fit.minimum = *best;
   if (const auto done = finish(fit, spectra); !done) return refusal_in(done);
   if (const auto done = keep_in_range(fit, spectra); !done) return refusal_in(done);
+  fit.correlation = line_correlation(fit.lines, fit.structure, fit.minimum.estimate, spectra.correlated_lines);
+  fit.inflation = score_inflation(fit.lines, fit.structure, fit.minimum.estimate, fit.correlation);
   const double least = best->cost;  // before the images of a hold
   fit.reached = std::count_if(fit.attempts.begin(), fit.attempts.end(), [&](const Attempt& a) {
     return a.cost <= least * (1.0 + kSameCost) + spectra.power() * kRounding;

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "line_correlation.hpp"
 #include "rational.hpp"
-#include "search.hpp"
 
 namespace bodeflow::maximum_likelihood {
 
@@ -27,6 +27,9 @@ struct Fit {
   bool delay_at_bound = false;
   Eigen::MatrixXcd residuals;  ///< normalised, lines x outputs, with the phase of U in them
   Eigen::MatrixXcd response;   ///< of the models at the lines, as it is measured: with delay and hold
+
+  LineCorrelation correlation;  ///< of the residuals, where the errors of neighbouring lines are correlated
+  double inflation = 1.0;       ///< see score_inflation
 
   Eigen::Index parameters() const { return structure.parameters(); }
 };

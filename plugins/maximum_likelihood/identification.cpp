@@ -18,7 +18,59 @@ Eigen::Index numerator_order(const Settings& settings, std::size_t output, Eigen
 
 CovarianceKind kind_for(const Identification& id) {
   const bool as_expected = id.test.probability && *id.test.probability >= kAsExpected;
+  if (id.fit.correlation.any()) return CovarianceKind::residuals;
   return id.variance_known && as_expected && id.spectra.outputs() == 1 ? CovarianceKind::information : CovarianceKind::residuals;
+}
+
+// The same with numerators of one order less; nothing where one has no order to give, or a coefficient of it is fixed.
+std::optional<Structure> with_lower_numerators(const Structure& structure) {
+  Structure lower = structure;
+  for (Eigen::Index& order : lower.numerator_orders) {
+    if (order-- == 0) return {};
+  }
+  for (const FixedCoefficient& c : structure.fixed) {
+    if (!c.of_denominator && c.power > lower.numerator_orders[static_cast<std::size_t>(c.output)]) return {};
+  }
+  return lower;
+}
+
+// Takes numerators of lower order as long as none of the higher ones is significantly better, or notes where that could be done.
+void weigh_numerator(const Settings& settings, Identification& id) {
+  const Fit highest = id.fit;
+  if (!settings.estimate_delay) return;
+  Structure structure = highest.structure;
+  structure.estimate_delay = true;
+  while (const auto lower = with_lower_numerators(structure)) {
+    auto fit = fit_model(id.spectra, *lower, settings.starts);
+    if (!fit || chance_of_fall(id.spectra, *fit, highest) < kSignificantFall ||
+        chance_of_fall(id.spectra, *fit, id.fit) < kSignificantFall)
+      return;
+    if (!settings.numerator_orders.empty()) {
+      id.enough_numerator_orders = lower->numerator_orders;
+      return;
+    }
+    id.fit = std::move(*fit);
+    structure = *lower;
+  }
+}
+
+// R, or why there is none: also where the coefficients' own covariance is not finite, or not positive.
+void add_covariance(Identification& id) {
+  const Fit& fit = id.fit;
+  auto root = covariance_root(fit.lines, fit.structure, fit.minimum.estimate, id.covariance_kind, id.spectra.degrees_of_freedom,
+                              fit.correlation);
+  if (!root) {
+    id.no_covariance = root.error().text;
+    return;
+  }
+  for (std::size_t i = 0; i < fit.models.size(); ++i) {
+    const Coefficients c = coefficients_of(fit.lines, fit.structure, fit.minimum.estimate, i, fit.models[i], *root);
+    for (std::size_t p = 0; p < c.names.size() && id.no_covariance.empty(); ++p) {
+      if (!std::isfinite(c.covariance(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(p))))
+        id.no_covariance = "that of " + c.names[p] + " is not finite: lower the order, or the numerator order";
+    }
+  }
+  if (id.no_covariance.empty()) id.covariance_root = std::move(*root);
 }
 
 Expected<void> check(const Settings& settings, const Spectra& spectra) {
@@ -69,18 +121,13 @@ Expected<Identification> identify(const Spectra& spectra, const Settings& settin
     id.fit = scan->orders[scan->chosen].fit;
     id.scan = std::move(*scan);
   }
+  weigh_numerator(settings, id);
   id.test = cost_test(id.spectra, id.fit);
   id.criteria = criteria(id.spectra, id.fit);
   id.covariance_kind = kind_for(id);
-  auto root =
-      covariance_root(id.fit.lines, id.fit.structure, id.fit.minimum.estimate, id.covariance_kind, id.spectra.degrees_of_freedom);
-  if (root && root->allFinite()) {
-    id.covariance_root = std::move(*root);
-  } else {
-    id.no_covariance = root ? "its numbers are not finite" : root.error().text;
-  }
+  add_covariance(id);
   const Eigen::MatrixXcd error = id.spectra.response() - id.fit.response;
-  for (Eigen::Index i = 0; i < error.cols(); ++i) id.whiteness.push_back(whiteness(error.col(i)));
+  for (Eigen::Index i = 0; i < error.cols(); ++i) id.whiteness.push_back(whiteness(error.col(i), id.spectra.correlated_lines));
   return id;
 }
 

@@ -17,7 +17,8 @@ struct Settings {
   Domain domain = Domain::s;
   std::optional<Eigen::Index> order;  ///< nothing: the lowest that suffices
   Eigen::Index highest_order = 8;
-  /// One an output, or one for all, or none (order - 1 of s, the order of z); below 0: relative to the order.
+  /// One an output, or one for all, or none (order - 1 of s, the order of z; less where the delay is estimated and less is
+  /// enough); below 0: relative to the order.
   std::vector<Eigen::Index> numerator_orders;
   bool estimate_delay = false;
   double delay_s = 0.0;
@@ -34,6 +35,9 @@ struct Identification {
   Spectra spectra;  ///< of the lines that were fitted, weighted as they were
   Fit fit;
   std::optional<OrderScan> scan;
+  /// With a delay that is estimated: a numerator of one order less, with which the cost rises no more than by chance. Data then
+  /// hardly tell its highest coefficient from the delay.
+  std::optional<std::vector<Eigen::Index>> enough_numerator_orders;
   bool variance_known = true;
   CostTest test;  ///< meaningful where variance_known
   Criteria criteria;
@@ -46,7 +50,9 @@ struct Identification {
 /// The structure that the settings ask for at an order.
 Structure structure_for(const Settings& settings, const Spectra& spectra, Eigen::Index order);
 
-/// The model of `spectra` (those of the band). The covariance is that of the Fisher information for one output whose cost is as
+/// The model of `spectra` (those of the band). Where the delay is estimated and no numerator order is given, that is the lowest
+/// which no higher one undercuts significantly: a zero far above the band and a delay are nearly the same, b1 s + b0 ~ b0 exp(s
+/// b1/b0). The covariance is that of the Fisher information for one output whose cost is as
 /// expected (probability at least 1 %), else that of the residuals. Errors: those of fit_model.
 Expected<Identification> identify(const Spectra& spectra, const Settings& settings);
 

@@ -111,6 +111,9 @@ Expected<Measured> read_measured(const RecordView& record, const std::string& in
   if (data->degrees_of_freedom && std::isfinite(*data->degrees_of_freedom))
     m.spectra.degrees_of_freedom = *data->degrees_of_freedom;
   if (data->sample_rate_hz && *data->sample_rate_hz > 0.0) m.spectra.sample_time_s = 1.0 / *data->sample_rate_hz;
+  m.spectra.correlated_lines = data->correlated_lines;
+  if (static_cast<Eigen::Index>(data->input_amplitude.size()) == data->inputs())
+    m.input_amplitude = data->input_amplitude[static_cast<std::size_t>(*column)];
   if (const auto array = record.array("input_mean")) m.input_unit = array->unit;
   if (const auto array = record.array("output_mean")) m.output_unit = array->unit;
   m.checksum = checksum_of(m.spectra);

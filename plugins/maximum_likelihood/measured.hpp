@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bodeflow/record.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@ struct Measured {
   bool mean_spectra = false;  ///< true: with the noise of the input and its covariance with that of the output
   std::string input_name;
   std::vector<std::string> output_names;
-  std::vector<std::string> units;       ///< of G, one an output
-  std::string input_unit, output_unit;  ///< where the record tells them; output_unit: of the first output
+  std::vector<std::string> units;         ///< of G, one an output
+  std::string input_unit, output_unit;    ///< where the record tells them; output_unit: of the first output
+  std::optional<double> input_amplitude;  ///< largest |input|
   std::string checksum;
 };
 

@@ -103,6 +103,7 @@ records::ModelData described(const Identification& id, const Measured& measured,
   m.samples = id.spectra.lines();
   const double hz = 1.0 / (2.0 * std::numbers::pi);
   m.band_hz = hz * Eigen::Vector2d(id.spectra.omega_rad_s[0], id.spectra.omega_rad_s[id.spectra.lines() - 1]);
+  m.input_amplitude = measured.input_amplitude;
   m.data_checksum = measured.checksum;
   return m;
 }
@@ -159,8 +160,9 @@ RecordBuilder model_record(const Identification& id, const Measured& measured, c
   r.set("weighting", weighting_name(settings.weighting));
   r.set("fitted_outputs", measured.output_names);
   if (m.covariance.size() != 0) {
-    r.set("covariance_method",
-          id.covariance_kind == CovarianceKind::information ? "inverse Fisher information" : "residuals (sandwich)");
+    r.set("covariance_method", id.covariance_kind == CovarianceKind::information ? "inverse Fisher information"
+                               : id.fit.correlation.any()                        ? "residuals (sandwich), lines correlated"
+                                                                                 : "residuals (sandwich)");
     records::put_list<double>(r, "standard_deviation", "", m.covariance.diagonal().cwiseSqrt());
     if (id.fit.structure.estimate_delay)
       r.set("delay_std", std::sqrt(m.covariance(m.covariance.rows() - 1, m.covariance.rows() - 1)));
@@ -175,6 +177,8 @@ RecordBuilder model_record(const Identification& id, const Measured& measured, c
     r.set("whiteness_lags", static_cast<std::int64_t>(white->lags));
     r.set("whiteness_probability", white->probability);
   }
+  if (id.fit.correlation.any())
+    r.set("effective_lines", static_cast<double>(id.spectra.lines()) / id.fit.correlation.lines_of_one());
   add_evidence(id, r);
   return r;
 }

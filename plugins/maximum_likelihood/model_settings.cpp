@@ -52,7 +52,9 @@ void describe_settings(Describe& d) {
   d.parameter("highest_order", std::int64_t{8}).range(1, kHighestOrder).doc("of the search for the order");
   d.parameter("numerator_order", std::vector<std::int64_t>{})
       .range(-kHighestOrder, kHighestOrder)
-      .doc("one for all outputs, or one each; below 0: relative to the order; default: order - 1 in s, the order in z");
+      .doc(
+          "one for all outputs, or one each; below 0: relative to the order; default: order - 1 in s, the order in z, with "
+          "`delay: estimate` the lowest that no higher one undercuts significantly");
   d.parameter("delay", "0").doc("0, a time such as 150 us, or estimate");
   d.parameter("delay_range", std::vector<double>{})
       .unit("s")

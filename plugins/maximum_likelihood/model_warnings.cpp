@@ -95,6 +95,13 @@ void warn_of_search(const Identification& id, Texts& warnings) {
     warnings.push_back("the delay is at the end of its range, " + rounded(fit.structure.delay_s) +
                        " s: widen `delay_range`, or give `delay: 0`");
   }
+  if (id.enough_numerator_orders) {
+    const std::string highest = "b" + std::to_string(fit.structure.numerator_orders.front());
+    const std::string orders = std::to_string(id.enough_numerator_orders->front());
+    warnings.push_back("the data do not tell " + highest + " from the delay: a numerator of order " + orders +
+                       " explains them as well; standard deviations of delay and " + highest +
+                       " are not to be relied on; give `numerator_order: " + orders + "`, leave it out, or give the delay");
+  }
   if (!id.no_covariance.empty()) warnings.push_back("the model has no covariance: " + id.no_covariance);
   if (id.scan && id.scan->still_falls) {
     warnings.push_back("the cost still falls at order " + std::to_string(id.scan->orders.back().fit.structure.order) +

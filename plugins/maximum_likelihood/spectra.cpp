@@ -81,6 +81,7 @@ Spectra evenly_weighted(const Spectra& spectra, bool relative) {
   }
   Spectra s = spectra_of(spectra.omega_rad_s, response, variance);
   s.sample_time_s = spectra.sample_time_s;
+  s.correlated_lines = spectra.correlated_lines;
   s.variance_known = false;
   return s;
 }

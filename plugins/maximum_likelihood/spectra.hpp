@@ -19,6 +19,8 @@ struct Spectra {
   Eigen::MatrixXcd covariance;      ///< E(dY_i conj dU)
   /// nu, complex, of variances estimated from the scatter between periods: P - 1.
   double degrees_of_freedom = std::numeric_limits<double>::infinity();
+  /// How many lines before and behind a line have errors that are correlated with its own; 0: all are independent.
+  Eigen::Index correlated_lines = 0;
   bool variance_known = true;  ///< false: the variances only say how lines weigh against each other
 
   Eigen::Index lines() const { return omega_rad_s.size(); }

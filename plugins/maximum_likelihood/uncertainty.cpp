@@ -1,6 +1,8 @@
 #include "uncertainty.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 
 #include "coefficients.hpp"
@@ -44,7 +46,7 @@ Eigen::RowVectorXcd slope_of_root(const Basis& basis, const Eigen::VectorXd& c, 
 }  // namespace
 
 Expected<Eigen::MatrixXd> covariance_root(const Lines& lines, const Structure& structure, const Estimate& estimate,
-                                          CovarianceKind kind, double degrees_of_freedom) {
+                                          CovarianceKind kind, double degrees_of_freedom, const LineCorrelation& correlation) {
   const auto directions = tangent(lines, structure, estimate);
   if (!directions) return refusal_in(directions);
   const Eigen::MatrixXd columns = free_columns(*directions, structure.estimate_delay);
@@ -63,6 +65,20 @@ Expected<Eigen::MatrixXd> covariance_root(const Lines& lines, const Structure& s
     return Eigen::MatrixXd(std::sqrt(0.5 * few) * columns * scaled * s.cwiseInverse().asDiagonal());
   }
   const double equations = lines.weight.sum() * static_cast<double>(lines.channels.size());
+  if (correlation.any()) {
+    const Eigen::MatrixXd white = scaled * s.cwiseInverse().asDiagonal();
+    const auto through = [&](std::size_t lags) {
+      return Eigen::MatrixXd(white.transpose() * score_covariance(lines, structure, estimate, correlation, lags, slope) * white);
+    };
+    const auto count = static_cast<double>(columns.cols());
+    const double alone = through(1).trace() / count;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(through(correlation.lags.size()));
+    const Eigen::VectorXd raised = parts.eigenvalues().cwiseMax(alone);
+    const double lost = std::min(0.5 * count * static_cast<double>(2 * correlation.lags.size() - 1), 0.5 * equations);
+    const double nu = degrees_of_freedom, few = std::isinf(nu) || !(nu > 2.0) ? 1.0 : (nu - 1.0) / (nu - 2.0);
+    return Eigen::MatrixXd(std::sqrt(few * equations / (equations - lost)) * columns * white * parts.eigenvectors() *
+                           raised.cwiseSqrt().asDiagonal());
+  }
   const double factor = equations / (equations - 0.5 * static_cast<double>(columns.cols()));
   const Eigen::MatrixXd inverse = scaled * s.cwiseAbs2().cwiseInverse().asDiagonal() * scaled.transpose();
   return Eigen::MatrixXd(std::sqrt(factor) * columns * inverse * gradients(slope, residuals(lines, estimate)));

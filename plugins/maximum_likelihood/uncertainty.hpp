@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "line_correlation.hpp"
 #include "rational.hpp"
 #include "search.hpp"
 
@@ -23,11 +24,17 @@ enum class CovarianceKind {
 ///
 /// Information with variances of nu degrees of freedom: times nu/(nu - 2), since lines weigh by chance (factor (P - 1)/(P - 3)
 /// for P periods; to be had for nu > 2). Residuals: times F/(F - n/2) for n parameters at F complex equations.
+/// With `correlation` the residuals' sum is score_covariance, raised in directions where it is below that of independent lines,
+/// times (nu - 1)/(nu - 2), since the weights of lines scatter, which their mean correlation does not hold, and times
+/// F/(F - (2 d + 1) n/2) for a distance d, at most 2: of the slow errors, which only F/(2 d + 1) equations tell, the fit has
+/// taken n/2 away.
+///
 /// References: R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach, 2nd ed. 2012, sections 9.12 and
 /// 12.3; L. Ljung, System Identification, 2nd ed. 1999, section 9.4 (sandwich).
 /// Errors: data that leave a combination of the parameters free (smallest singular value below 1e-10 of the largest).
 Expected<Eigen::MatrixXd> covariance_root(const Lines& lines, const Structure& structure, const Estimate& estimate,
-                                          CovarianceKind kind, double degrees_of_freedom);
+                                          CovarianceKind kind, double degrees_of_freedom,
+                                          const LineCorrelation& correlation = {});
 
 /// The coefficients of one output's model with their covariance.
 struct Coefficients {

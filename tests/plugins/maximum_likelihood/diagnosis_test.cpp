@@ -104,3 +104,20 @@ TEST_CASE("maximum likelihood: variances that are too large are told") {
   data.input_variance *= 4.0;
   CHECK(says(warnings_of(data, settings(Domain::s, 2)), "the variances are too large"));
 }
+
+TEST_CASE("maximum likelihood: a numerator that data do not tell from the delay is told by name") {
+  const Rational plant{list({Complex(-1.5, 14.0), Complex(-1.5, -14.0)}), list({}), 200.0, 3.7e-3, 0.0};
+  numerics::Random random(4);
+  const Spectra data = measured(plant, kOmega, {0.0, 0.01, 0.0}, random);
+  Settings s = settings(Domain::s, 2);
+  s.estimate_delay = true;
+  const auto id = identify(data, s);
+  REQUIRE(id);
+  CHECK(id->fit.structure.numerator_orders == std::vector<Eigen::Index>{0});
+  CHECK(id->covariance_root.size() != 0);
+  CHECK(warnings_of(data, s).empty());
+  s.numerator_orders = {1};
+  CHECK(says(warnings_of(data, s), "the data do not tell b1 from the delay: a numerator of order 0 explains them as well"));
+  s.numerator_orders = {0};
+  CHECK(warnings_of(data, s).empty());
+}

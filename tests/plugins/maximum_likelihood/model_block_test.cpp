@@ -36,6 +36,7 @@ RecordBuilder response_record(bool variance, double rate_hz = 1000.0) {
   d.output_names = {"motor", "load"};
   d.response_units = {"rad/A", "rad/A"};
   if (rate_hz > 0.0) d.sample_rate_hz = rate_hz;
+  d.input_amplitude = {2.5};
   d.frequency_hz = kOmega / (2.0 * std::numbers::pi);
   d.response.resize(40, 2);
   d.response << response_of(plant.motor, kOmega), response_of(plant.load, kOmega);
@@ -79,6 +80,7 @@ TEST_CASE("maximum_likelihood.model: model, scan and residual of two outputs sta
   CHECK(read->method == "maximum_likelihood.model");
   CHECK(read->form == "transfer_function");
   CHECK(read->order == 4);
+  CHECK(read->input_amplitude == 2.5);
   CHECK(read->sample_time_s == 0.0);
   CHECK(read->delay_s == Approx(2e-3).epsilon(0.1));
   CHECK(read->output_name == "motor");

@@ -43,8 +43,12 @@ Runs run(int count, const Settings& s, const Rational& truth, Data data) {
       r.whiteness.resize(count);
       r.pole_hits = Eigen::MatrixXd::Zero(count, 1);
     }
-    r.values.row(n) = c.values;
-    r.deviations.row(n) = c.covariance.diagonal().cwiseSqrt();
+    // A delay at the end of its range is no parameter and has no deviation: it counts as a miss.
+    REQUIRE(c.values.size() + (id->fit.delay_at_bound ? 1 : 0) == r.values.cols());
+    r.values.row(n).setConstant(id->fit.models[0].delay_s);
+    r.deviations.row(n).setZero();
+    r.values.row(n).head(c.values.size()) = c.values;
+    r.deviations.row(n).head(c.values.size()) = c.covariance.diagonal().cwiseSqrt();
     r.costs[n] = id->test.cost;
     r.probabilities[n] = id->test.probability.value_or(-1.0);
     r.whiteness[n] = id->whiteness[0]->probability;
@@ -84,6 +88,7 @@ Settings with_delay() {
   Settings s = settings(Domain::s, 2);
   s.estimate_delay = true;
   s.delay_range_s = std::pair(0.0, 20e-3);
+  s.numerator_orders = {1};
   s.starts = 1;
   return s;
 }
@@ -150,4 +155,17 @@ TEST_CASE("maximum likelihood: without variance the covariance comes from the re
     CAPTURE(p);
     CHECK(r.coverage(p, kTruth[p]) == Approx(0.95).margin(0.08));
   }
+}
+
+TEST_CASE("maximum likelihood: a delay of a plant without zeros lies in its interval, the numerator order not given") {
+  // 200 / (s^2 + 3 s + 200), 3.7 ms: b1 s + b0 ~ b0 exp(s b1/b0) would leave the delay free.
+  const Rational plant{kPlant.poles, list({}), 200.0, 3.7e-3, 0.0};
+  const Eigen::VectorXd omega = even_spaced(1.0, 60.0, 60);
+  Settings s = with_delay();
+  s.numerator_orders.clear();
+  const Runs r = run(100, s, plant, [&](numerics::Random& random) { return measured(plant, omega, {0.02, 0.01, 0.0}, random); });
+  REQUIRE(r.values.cols() == 4);
+  CHECK(r.deviations.col(3).maxCoeff() < 2e-3);
+  CHECK(r.coverage(3, 3.7e-3) >= 0.90);
+  CHECK(r.coverage(3, 3.7e-3) <= 0.99);
 }

@@ -24,6 +24,33 @@ void require_fit(const char* parameter, const std::vector<T>& list, const std::v
        records::counted(static_cast<std::int64_t>(quantities.size()), "number") + ": " + listed(quantities));
 }
 
+bool is_seed(const std::string& axis) { return axis == "seed" || (axis.size() > 5 && axis.ends_with(".seed")); }
+
+/// The seeds of the runs; refuses what else a sweep may hold.
+std::vector<double> seeds_of(const RecordView& sweep) {
+  constexpr std::string_view kAxis = "axis.";
+  std::vector<std::string> axes;
+  for (const auto& array : sweep.arrays())
+    if (array.name.starts_with(kAxis)) axes.emplace_back(array.name.substr(kAxis.size()));
+  for (const auto& attribute : sweep.attributes())
+    if (attribute.name().starts_with(kAxis)) axes.emplace_back(attribute.name().substr(kAxis.size()));
+  for (const std::string& axis : axes)
+    if (!is_seed(axis))
+      fail("the runs differ in '" + axis +
+           "'; a study takes runs that differ in their seed alone: sweep the seed, one study for each '" + axis + "'");
+  if (axes.size() > 1) fail("the runs differ in '" + axes[0] + "' and '" + axes[1] + "'; needed: one seed");
+  if (axes.empty()) return {};
+  const auto array = sweep.array("axis." + axes.front());
+  if (!array || array->element != BF_F64) fail("the seeds of the sweep are not numbers");
+  const auto values = array->as<double>();
+  std::vector<double> seeds(values.begin(), values.end()), sorted = seeds;
+  std::sort(sorted.begin(), sorted.end());
+  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
+    fail("seed " + std::to_string(std::llround(*twice)) +
+         " occurs twice: these runs are one and the same, and the spread too small");
+  return seeds;
+}
+
 /// An array of the record, unless the list is empty.
 void put(RecordBuilder& record, const char* name, const std::vector<double>& values) {
   if (values.empty()) return;
@@ -90,6 +117,7 @@ void MonteCarlo::receive(int, const RecordView& record, Io&) {
   const auto runs = sweep_runs(record);
   if (!runs) fail(runs.error().text);
   if (*runs < 2) fail("the sweep has 1 run; a spread needs at least 2");
+  seeds_ = seeds_of(record);
   auto quantities = sweep_quantities(record, sources_);
   if (!quantities) fail(quantities.error().text);
   quantities_ = std::move(*quantities);
@@ -98,12 +126,6 @@ void MonteCarlo::receive(int, const RecordView& record, Io&) {
   if (!mean) fail(mean.error().text);
   mean_response_ = std::move(*mean);
   of_ = record.text("of").value_or("");
-  auto seeds = record.array("axis.seed");
-  if (!seeds) seeds = record.array("axis.run.seed");
-  if (seeds && seeds->element == BF_F64) {
-    const auto values = seeds->as<double>();
-    seeds_.assign(values.begin(), values.end());
-  }
   runs_ = *runs;
 }
 

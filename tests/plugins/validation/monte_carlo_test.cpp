@@ -193,3 +193,29 @@ TEST_CASE("monte_carlo: what does not fit is refused by name") {
   twice.receive(three_runs(), 0.0);
   CHECK(failure_of([&] { twice.receive(three_runs(), 0.0); }) == "a second sweep arrived; one study takes one");
 }
+
+TEST_CASE("monte_carlo: refuses runs that differ in more than their seed, and a seed that occurs twice") {
+  const auto refusal = [](auto change) {
+    RecordBuilder r("sweep");
+    r.set("of", "model");
+    r.set("runs", std::int64_t{3});
+    put(r, "gain", "", {3}, {1, 2, 3});
+    change(r);
+    BlockDriver<MonteCarlo> block;
+    block.set("quantities", std::vector<std::string>{"gain"});
+    return failure_of([&] { study(block, r); });
+  };
+  CHECK(
+      refusal([](RecordBuilder& r) {
+        put(r, "axis.seed", "", {3}, {1, 2, 3});
+        put(r, "axis.bench.noise", "", {3}, {1, 2, 3});
+      }) ==
+      "the runs differ in 'bench.noise'; a study takes runs that differ in their seed alone: sweep the seed, one study for each "
+      "'bench.noise'");
+  CHECK(refusal([](RecordBuilder& r) {
+          r.set("axis.mode", std::vector<std::string>{"a", "b", "c"});
+        }).rfind("the runs differ in 'mode';", 0) == 0);
+  CHECK(refusal([](RecordBuilder& r) {
+          put(r, "axis.seed", "", {3}, {7, 1, 7});
+        }) == "seed 7 occurs twice: these runs are one and the same, and the spread too small");
+}

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "data_units.hpp"
+
 namespace bodeflow::validation {
 
 void ComparisonBlock::describe(Describe& d) {
@@ -11,8 +13,10 @@ void ComparisonBlock::describe(Describe& d) {
   d.doc(
       "Every record that arrives on `model` is a model of its own. Without streams: parameters with their deviations, poles and "
       "responses side by side, differences from the first model in standard deviations. With streams, beside that: simulation "
-      "from the measured input (initial state and offset estimated; continuous models with the input held over each sample and "
-      "their delay), `steps`-step prediction with a noise model (an autoregression fitted to the simulation's residual of these "
+      "from the measured input (initial state and offset estimated; continuous models with their delay and the input held over "
+      "each sample, or linear "
+      "between samples where the model states `hold: none`), `steps`-step prediction with a noise model (an autoregression "
+      "fitted to the simulation's residual of these "
       "data), fit = 100 (1 - |y - yhat| / |y - mean y|), correlations of the residual with itself and the input, FPE, AIC, and "
       "warnings where data leave the band or the amplitude that a model was fitted to. The fit is biased by noise on the "
       "measured "
@@ -82,6 +86,21 @@ void ComparisonBlock::receive(int, const RecordView& record, Io&) {
   auto read = records::read_model(record);
   if (!read) fail("model " + std::to_string(models_.size() + 1) + ": " + read.error().text);
   models_.push_back(std::move(*read));
+  holds_.push_back(record.text("hold") == "none" ? Hold::first_order : Hold::zero_order);
+}
+
+/// The model against the data; a name of another output is only a warning.
+Expected<Judgement> ComparisonBlock::judged(std::size_t i, const Measured& data) const {
+  const auto converted = in_units_of(input_signal_, output_signal_, models_[i]);
+  if (!converted) return unexpected(converted.error().text);
+  JudgementSettings settings = settings_;
+  settings.hold = holds_[i];
+  auto judgement = judge(*converted, data, settings);
+  const std::string &own = converted->output_name, &found = output_signal_.names.front();
+  if (judgement && !own.empty() && own != "output" && found != "output" && own != found)
+    judgement->warnings.push_back("its output is '" + own + "', that of the data '" + found +
+                                  "': see that both are the same quantity");
+  return judgement;
 }
 
 /// Given, or by method, numbered where a name would stand twice.
@@ -111,8 +130,9 @@ void ComparisonBlock::finish(Io& io) {
                         Eigen::Map<const Eigen::VectorXd>(y_.data(), static_cast<Eigen::Index>(y_.size()))};
     comparison->input_signal = input_signal_;
     comparison->output_signal = output_signal_;
+    comparison->holds = holds_;
     for (std::size_t i = 0; i < models_.size(); ++i) {
-      auto judgement = judge(models_[i], comparison->data, settings_);
+      auto judgement = judged(i, comparison->data);
       if (!judgement) fail("model '" + comparison->names[i] + "': " + judgement.error().text);
       comparison->judgements.push_back(std::move(*judgement));
     }
@@ -129,6 +149,7 @@ void ComparisonBlock::reset() {
   u_.clear();
   y_.clear();
   models_.clear();
+  holds_.clear();
 }
 
 }  // namespace bodeflow::validation

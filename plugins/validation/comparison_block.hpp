@@ -28,6 +28,7 @@ class ComparisonBlock final : public Block {
   void collect(std::span<const double> samples, const char* port, const records::Signals& signal,
                std::vector<double>& into) const;
   std::vector<std::string> names() const;
+  Expected<Judgement> judged(std::size_t model, const Measured& data) const;
 
   std::vector<std::string> names_;
   JudgementSettings settings_;
@@ -37,6 +38,7 @@ class ComparisonBlock final : public Block {
   records::Signals input_signal_, output_signal_;
   std::vector<double> u_, y_;
   std::vector<records::ModelData> models_;
+  std::vector<Hold> holds_;  // one a model
 };
 
 }  // namespace bodeflow::validation

@@ -68,6 +68,7 @@ void put_responses(RecordBuilder& r, const Comparison& c) {
 }
 
 std::string noise_model_text(const Judgement& j) {
+  if (j.unstable) return "white noise through the model's poles, those that are unstable mirrored";
   const auto order = j.noise.coefficients.size();
   return order == 0 ? "white noise" : "autoregression of order " + std::to_string(order);
 }
@@ -167,6 +168,12 @@ RecordBuilder write_comparison(const Comparison& c) {
   r.set("steps", static_cast<std::int64_t>(c.settings.steps));
   r.set("confidence", c.settings.confidence);
   r.set("estimated", c.settings.offset ? "initial state and output offset, from these data" : "initial state, from these data");
+  std::vector<std::string> between;
+  for (std::size_t i = 0; i < c.holds.size(); ++i)
+    between.emplace_back(c.models[i].sample_time_s > 0.0   ? "discrete-time model"
+                         : c.holds[i] == Hold::first_order ? "linear between samples"
+                                                           : "held over each sample");
+  r.set("input_between_samples", between);
   std::vector<std::string> noise_models;
   for (const Judgement& j : c.judgements) noise_models.push_back(noise_model_text(j));
   r.set("noise_models", noise_models);

@@ -24,7 +24,8 @@ struct Comparison {
   Measured data;
   records::Signals input_signal, output_signal;
   std::vector<Judgement> judgements;  ///< one a model, or none
-  Eigen::Index shown = 500;          ///< samples of the signals that the record holds
+  std::vector<Hold> holds;            ///< of the judgements
+  Eigen::Index shown = 500;           ///< samples of the signals that the record holds
 };
 
 /// What the models are, side by side: parameters, poles, responses, and a warning where they can't be compared as independent

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "records/signals.hpp"
+#include "unstable_prediction.hpp"
 
 namespace bodeflow::validation {
 namespace {
@@ -56,26 +57,44 @@ void look_at_coverage(const records::ModelData& m, const Measured& data, Judgeme
   if (m.input_amplitude) warn_of_amplitude(m, data.input.cwiseAbs().maxCoeff(), j);
 }
 
-/// Simulation's residual, noise model, prediction.
-void predict_ahead(const Eigen::VectorXd& y, const JudgementSettings& s, Eigen::Index parameters, Judgement& j) {
+void warn_of_hold(const records::ModelData& m, const Measured& data, Judgement& j) {
+  const double share = energy_outside(data.input, data.sample_rate_hz, 0.0, data.sample_rate_hz / 4.0);
+  if (m.sample_time_s > 0.0 || !(share > kNotableShare)) return;
+  j.warnings.push_back(percent(share) +
+                       " of the input's energy lie above a quarter of the sample rate, where an input that is linear between "
+                       "samples falls short of a band-limited one by 19 to 59 %; sample faster, or excite lower frequencies");
+}
+
+/// Simulation's residual, noise model, prediction. Returns the one-step prediction error.
+Eigen::VectorXd predict_ahead(const SampledModel& model, const Eigen::VectorXd& u, const Eigen::VectorXd& y,
+                              const JudgementSettings& s, Eigen::Index parameters, Judgement& j) {
   const Eigen::VectorXd residual = y - j.simulation.output;
   j.residual_std = root_mean_square(residual);
   // Rounding is no noise.
   const bool exact = j.residual_std < 1e-12 * root_mean_square(y);
-  j.noise = exact ? Autoregression{} : fit_autoregression(residual, s.noise_order);
-  j.prediction = j.simulation.output + predict(j.noise, residual, s.steps);
+  Eigen::VectorXd innovation;
+  if (j.unstable) {
+    UnstablePrediction p = predict_unstable(model.system, u, y, s.steps, s.offset);
+    j.noise.std = p.innovation_std;
+    j.prediction = std::move(p.output);
+    j.expected_prediction_std = p.expected_error_std;
+    innovation = std::move(p.innovation);
+  } else {
+    j.noise = exact ? Autoregression{} : fit_autoregression(residual, s.noise_order);
+    j.prediction = j.simulation.output + predict(j.noise, residual, s.steps);
+    j.expected_prediction_std = prediction_deviation(j.noise, s.steps);
+    innovation = residual - predict(j.noise, residual, 1);
+  }
   j.fit = fit_of(y, j.simulation.output);
   j.prediction_fit = fit_of(y, j.prediction);
   j.prediction_std = root_mean_square(y - j.prediction);
-  j.expected_prediction_std = prediction_deviation(j.noise, s.steps);
-
-  const Eigen::VectorXd innovation = residual - predict(j.noise, residual, 1);
   const auto n = static_cast<double>(y.size());
   const auto unknowns =
       static_cast<double>(parameters + j.noise.coefficients.size() + j.simulation.initial_state.size() + (s.offset ? 1 : 0));
   j.one_step_variance = innovation.squaredNorm() / n;
   j.fpe = n > unknowns ? j.one_step_variance * (n + unknowns) / (n - unknowns) : std::numeric_limits<double>::quiet_NaN();
   j.aic = n * std::log(j.one_step_variance) + 2.0 * unknowns;
+  return innovation;
 }
 
 }  // namespace
@@ -93,11 +112,12 @@ double energy_outside(const Eigen::VectorXd& x, double sample_rate_hz, double lo
 }
 
 Expected<Judgement> judge(const records::ModelData& model, const Measured& data, const JudgementSettings& settings) {
-  const auto sampled = sampled_model(model, data.sample_rate_hz);
+  const auto sampled = sampled_model(model, data.sample_rate_hz, settings.hold);
   if (!sampled) return unexpected(sampled.error().text);
   auto simulation = simulate(*sampled, data.input, data.output, settings.offset);
   if (!simulation) return unexpected(simulation.error().text);
   Judgement j;
+  j.unstable = sampled->largest_pole > 1.0 + 1e-9;
   j.simulation = std::move(*simulation);
   const Eigen::Index samples = data.output.size() - j.simulation.first;
   const Eigen::VectorXd y = data.output.tail(samples), u = data.input.tail(samples);
@@ -105,13 +125,14 @@ Expected<Judgement> judge(const records::ModelData& model, const Measured& data,
     return unexpected("the data have " + records::counted(samples, "sample") + " beyond its delay; needed: more than " +
                       std::to_string(4 * settings.lags) + " for correlations over " + std::to_string(settings.lags) + " lags");
   if ((y.array() == y[0]).all()) return unexpected("the output is constant: there is nothing to fit");
-  predict_ahead(y, settings, model.parameters.size(), j);
+  // The input that the outputs answer to comes `delay` samples before.
+  const Eigen::VectorXd innovation = predict_ahead(*sampled, data.input.head(samples), y, settings, model.parameters.size(), j);
   const Eigen::VectorXd residual = y - j.simulation.output;
   j.residual = test_residual(residual, u, settings.lags, 0, settings.confidence);
-  j.innovation =
-      test_residual(residual - predict(j.noise, residual, 1), u, settings.lags, j.noise.coefficients.size(), settings.confidence);
+  j.innovation = test_residual(innovation, u, settings.lags, j.noise.coefficients.size(), settings.confidence);
   look_at_coverage(model, data, j);
-  if (sampled->largest_pole > 1.0 + 1e-9)
+  if (settings.hold == Hold::first_order) warn_of_hold(model, data, j);
+  if (j.unstable)
     j.warnings.push_back(
         "it is unstable: its simulation follows the measured input for a short time only; judge it by its prediction, or in "
         "closed loop");

@@ -23,11 +23,13 @@ struct JudgementSettings {
   Eigen::Index noise_order = 20;  ///< highest order of the noise model; 0: white noise
   bool offset = true;             ///< estimate a constant offset of the output
   double confidence = 0.99;       ///< of the bands of the correlations
+  Hold hold = Hold::zero_order;   ///< of the input of a continuous-time model
 };
 
 /// What measured data say of a model.
 struct Judgement {
   Simulation simulation;
+  bool unstable = false;                 ///< predicted by its own poles, see unstable_prediction.hpp; no noise model is fitted
   Autoregression noise;                  ///< of the simulation's residual
   Eigen::VectorXd prediction;            ///< `steps` samples ahead, from simulation.first on
   double fit = 0.0;                      ///< of the simulation, per cent: 100 (1 - |y - yhat| / |y - mean y|)

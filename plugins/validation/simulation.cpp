@@ -5,6 +5,7 @@
 #include <bodeflow/numerics/discretise.hpp>
 #include <cmath>
 
+#include "first_order_hold.hpp"
 #include "records/signals.hpp"
 
 namespace bodeflow::validation {
@@ -29,7 +30,7 @@ Eigen::VectorXd forced(const numerics::StateSpace& s, const Eigen::Ref<const Eig
 
 }  // namespace
 
-Expected<SampledModel> sampled_model(const records::ModelData& m, double sample_rate_hz) {
+Expected<SampledModel> sampled_model(const records::ModelData& m, double sample_rate_hz, Hold hold) {
   const double time = 1.0 / sample_rate_hz;
   const numerics::TransferFunction g{m.numerator, m.denominator, m.sample_time_s};
   auto system = numerics::to_state_space(g);
@@ -45,7 +46,8 @@ Expected<SampledModel> sampled_model(const records::ModelData& m, double sample_
     sampled.system = std::move(*system);
     sampled.delay = delay.samples;
   } else {
-    auto held = numerics::zero_order_hold(*system, time, m.delay_s);
+    auto held = hold == Hold::first_order ? first_order_hold(*system, time, m.delay_s)
+                                          : numerics::zero_order_hold(*system, time, m.delay_s);
     if (!held) return unexpected(held.error().text);
     sampled.system = std::move(held->model);
     sampled.delay = held->delay;

@@ -14,11 +14,14 @@ struct SampledModel {
   double largest_pole = 0.0;    ///< largest magnitude of a value of z
 };
 
-/// The model at so many samples per second: a continuous-time one with its input held over each sample (zero-order hold) and its
-/// delay, a discrete-time one as it is.
+/// What the input of a continuous-time model does between the samples.
+enum class Hold { zero_order, first_order };
+
+/// The model at so many samples per second: a continuous-time one with its delay and its input held over each sample, or linear
+/// between samples, a discrete-time one as it is.
 /// Errors: more zeros than poles; a discrete-time model of another sample time, or with a delay that is no whole number of
 /// samples.
-Expected<SampledModel> sampled_model(const records::ModelData& model, double sample_rate_hz);
+Expected<SampledModel> sampled_model(const records::ModelData& model, double sample_rate_hz, Hold hold = Hold::zero_order);
 
 /// A simulated output beside the measured one.
 struct Simulation {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bodeflow/numerics/chi_squared.hpp>
 #include <cmath>
 #include <complex>
@@ -184,4 +185,69 @@ TEST_CASE("comparison block: what can't be compared is refused by name") {
           block.configure();
           block.receive(RecordBuilder("trace"), 0.0);
         }) == "model 1: a record of type 'trace'; needed: model");
+}
+
+TEST_CASE("comparison block: data in other units give the same fit, another dimension is refused by name") {
+  const Eigen::VectorXd u = white(600, 1), y = response_to(u) + white(600, 2, 0.05);
+  const auto held_against = [&](const char* of_u, const char* of_y, const Eigen::VectorXd& in, const Eigen::VectorXd& out) {
+    BlockDriver<ComparisonBlock> block;
+    block.configure();
+    block.resolve({facts("voltage", of_u, 600), facts("current", of_y, 600)});
+    block.activate(600, {100, 1});
+    block.process({{list(in)}, {list(out)}}, 600);
+    block.receive(records::write_model(second_order()), 0.0);
+    block.finish();
+    const RecordView r(*block.records()[0]);
+    return std::vector<double>{value(r, "fit", 0), value(r, "residual_std", 0)};
+  };
+  const auto plain = held_against("V", "A", u, y);
+  const auto milli = held_against("mV", "uA", 1e3 * u, 1e6 * y);
+  CHECK(milli[0] == Approx(plain[0]).epsilon(1e-9));
+  CHECK(milli[1] == Approx(1e6 * plain[1]).epsilon(1e-9));
+  CHECK(held_against("", "furlongs", u, y)[0] == plain[0]);
+  CHECK(failure_of([&] { held_against("m", "A", u, y); }) ==
+        "model 'hand': its input is a voltage in V, 'voltage' of the data is a length in m; compare with the input that it was "
+        "identified from");
+  CHECK(failure_of([&] { held_against("V", "rad/s", u, y); }) ==
+        "model 'hand': its output is a current in A, 'current' of the data is an angular frequency in rad/s; compare with the "
+        "output that it was identified from");
+}
+
+TEST_CASE("comparison block: a model without hold has its input linear between samples, the record says so") {
+  // A slow sine through 1 / (s + 5): exact at the samples.
+  Eigen::VectorXd u(800), y(800);
+  const double w = 20.0;
+  const std::complex<double> g = 5.0 / (std::complex<double>(0.0, w) + 5.0);
+  for (Eigen::Index n = 0; n < 800; ++n) {
+    const auto phasor = std::polar(1.0, w * 0.01 * static_cast<double>(n));
+    u[n] = phasor.imag();
+    y[n] = (g * phasor).imag();
+  }
+  records::ModelData m;
+  m.method = "hand";
+  m.form = "transfer_function";
+  m.order = 1;
+  m.numerator = Eigen::VectorXd::Constant(1, 5.0);
+  m.denominator = Eigen::Vector2d(1.0, 5.0);
+  m.output_name = "speed";
+  BlockDriver<ComparisonBlock> block;
+  block.configure();
+  block.resolve({facts("voltage", "V", 800), facts("current", "A", 800)});
+  block.activate(800, {100, 1});
+  block.process({{list(u)}, {list(y)}}, 800);
+  for (const char* hold : {"none", "zero_order"}) {
+    RecordBuilder r = records::write_model(m);
+    r.set("hold", hold);
+    block.receive(r, 0.0);
+  }
+  block.finish();
+  const RecordView r(*block.records()[0]);
+  CHECK(r.texts("input_between_samples") == std::vector<std::string_view>{"linear between samples", "held over each sample"});
+  CHECK(value(r, "fit", 0) > 99.6);
+  CHECK(value(r, "fit", 1) < 92.0);
+  const auto warnings = r.texts("warnings");
+  REQUIRE(warnings);
+  CHECK(std::any_of(warnings->begin(), warnings->end(), [](std::string_view text) {
+    return text == "model 'hand': its output is 'speed', that of the data 'current': see that both are the same quantity";
+  }));
 }

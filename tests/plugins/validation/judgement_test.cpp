@@ -115,3 +115,41 @@ TEST_CASE("judgement: an unstable model is told, and data that tell nothing are 
   REQUIRE_FALSE(few);
   CHECK(few.error().text == "the data have 100 samples beyond its delay; needed: more than 100 for correlations over 25 lags");
 }
+
+TEST_CASE("judgement: an unstable model is predicted through its own poles") {
+  // A pole at 1.25, held by the feedback u = r - 0.6 y.
+  const Eigen::VectorXd r = white(3000, 5), w = white(3000, 6, 0.2);
+  Eigen::VectorXd u = r, y = Eigen::VectorXd::Zero(3000);
+  for (Eigen::Index n = 0; n < 3000; ++n) {
+    if (n > 0) y[n] = 1.25 * y[n - 1] + u[n - 1] + w[n] - 0.8 * w[n - 1];  // F = 1 - z^-1 / 1.25: the mirrored pole
+    u[n] = r[n] - 0.6 * y[n];
+  }
+  records::ModelData m;
+  m.sample_time_s = 0.01;
+  m.numerator = Eigen::VectorXd::Ones(1);
+  m.denominator = Eigen::Vector2d(1.0, -1.25);
+  for (const Eigen::Index steps : {1, 3}) {
+    JudgementSettings s;
+    s.steps = steps;
+    const Judgement j = judged(m, u.head(500), y.head(500), s);
+    // psi of F / A: 1, 0.45, 0.5625
+    const double expected = steps == 1 ? 0.2 : 0.2 * std::sqrt(1.0 + 0.2025 + 0.31640625);
+    CHECK(j.prediction_std == Approx(expected).epsilon(0.1));
+    CHECK(j.expected_prediction_std == Approx(expected).epsilon(0.1));
+    CHECK(j.prediction_fit > 70.0);
+    CHECK(warns_of(j, "it is unstable"));
+  }
+}
+
+TEST_CASE("judgement: warns of an input that is hardly linear between samples") {
+  records::ModelData m;
+  m.numerator = Eigen::VectorXd::Constant(1, 40.0);
+  m.denominator = Eigen::Vector2d(1.0, 40.0);
+  JudgementSettings s;
+  s.hold = Hold::first_order;
+  const Eigen::VectorXd u = white(600, 1), y = white(600, 2);
+  CHECK(warns_of(judged(m, u, y, s), "above a quarter of the sample rate"));
+  CHECK_FALSE(warns_of(judged(m, coloured(600, 0.98, 3), y, s), "above a quarter of the sample rate"));
+  s.hold = Hold::zero_order;
+  CHECK_FALSE(warns_of(judged(m, u, y, s), "above a quarter of the sample rate"));
+}

@@ -1,0 +1,126 @@
+#include <nlohmann/json.hpp>
+
+#include "catch.hpp"
+#include "report/report.hpp"
+#include "system/command.hpp"
+#include "tools/report/run_results.hpp"
+
+using namespace bodeflow;
+using namespace bodeflow::tools::report;
+using Catch::Matchers::Contains;
+using nlohmann::ordered_json;
+using test::Folder;
+
+namespace {
+
+ordered_json array_of(const std::string& unit, const std::vector<std::uint64_t>& shape, const std::vector<double>& data) {
+  return {{"unit", unit}, {"shape", shape}, {"data", data}};
+}
+
+ordered_json trace() {
+  ordered_json record = {{"type", "trace"},
+                         {"attributes",
+                          {{"verdict", "named"},
+                           {"finding", "Missing effect: dead time of the inverter, 9.88 V."},
+                           {"effects", {"dead_time"}},
+                           {"unit", "A"},
+                           {"error_before", 0.28},
+                           {"error_after", 0.03},
+                           {"error_remedied", nullptr},
+                           {"noise_floor", 0.0288},
+                           {"noise_floor_99.9", 0.0305},
+                           {"excess_before", 0.2785},
+                           {"excess_after", 0.0084},
+                           {"conventions", {"the input is the command"}},
+                           {"parameter_names", {"gamma"}},
+                           {"parameter_units", {"1/s"}},
+                           {"effect_parameter_names", {"dead_time_voltage"}},
+                           {"effect_parameter_units", {"V"}},
+                           {"class_names", {"excited", "odd"}},
+                           {"class_records", {"fit 1", "select"}},
+                           {"class_p_limit", 0.0004},
+                           {"candidate_names", {"dead_time", "delay"}},
+                           {"candidate_reasons", {"added", "not physical: delay would be below 0 s"}}}}};
+  record["arrays"] = {{"effect_parameters", array_of("", {1}, {9.88})},
+                      {"effect_parameter_std", array_of("", {1}, {0.014})},
+                      {"parameters_before", array_of("", {1}, {393.4})},
+                      {"parameters_before_std", array_of("", {1}, {0.6})},
+                      {"parameters_after", array_of("", {1}, {286.3})},
+                      {"parameters_after_std", array_of("", {1}, {0.5})},
+                      {"class_before", array_of("1", {2, 2}, {39.7, 7.2, 22.0, 1.01})},
+                      {"class_after", array_of("1", {2, 2}, {0.98, 1.08, 1.02, 0.97})},
+                      {"class_p_before", array_of("1", {2, 2}, {0, 1e-9, 0, 0.4})},
+                      {"class_p_after", array_of("1", {2, 2}, {0.6, 0.02, 0.4, 0.5})},
+                      {"candidate_fit_gain", array_of("1", {2}, {389351, 147})},
+                      {"candidate_p", array_of("1", {2}, {0, 7e-34})},
+                      {"candidate_select_gain", array_of("1", {2}, {144826, 149})},
+                      {"candidate_share", array_of("1", {2}, {0.9996, 0.001})},
+                      {"frequency", array_of("Hz", {4}, {0, 1, 2, 3})},
+                      {"residual_before", array_of("A", {4}, {0.001, 0.02, 0.001, 0.01})},
+                      {"residual_after", array_of("A", {4}, {0.001, 0.001, 0.001, 0.001})},
+                      {"residual_noise", array_of("A", {4}, {0.001, 0.001, 0.001, 0.001})},
+                      {"kind", array_of("", {4}, {0, 1, 3, 2})}};
+  return record;
+}
+
+ordered_json reveal() {
+  return {{"type", "reveal"},
+          {"attributes",
+           {{"right", true},
+            {"sentence", "Right: the bench hid dead_time (1.4e-06 s)."},
+            {"parameter_names", {"gamma"}},
+            {"parameter_units", {"1/s"}}}},
+          {"arrays",
+           {{"parameters_before", array_of("", {1}, {393.4})},
+            {"parameters_after", array_of("", {1}, {286.3})},
+            {"parameters_after_std", array_of("", {1}, {0.5})},
+            {"parameters_true", array_of("", {1}, {285.9})}}}};
+}
+
+std::string page_of(const ordered_json& results, const std::string& graph = "") {
+  const Folder folder;
+  folder.write("result.json", test::result_with(results).dump());
+  if (!graph.empty()) folder.write("graph.yaml", graph);
+  REQUIRE(write_report({folder.path(), {}}, Registry::with({})));
+  return folder.read("report.html");
+}
+
+}  // namespace
+
+TEST_CASE("report: a trace says first what is missing, then shows errors, parameters, classes, candidates and the residual") {
+  const std::string page = page_of({{"trace", trace()}});
+  for (const char* text : {"<b>Missing effect: dead time of the inverter, 9.88 V.</b>",
+                           "The noise alone stays below 0.0305 A with a probability of 99.9 %.",
+                           "What is not noise: 0.2785 A before, 0.0084 A after.", "Added: dead_time", "dead_time_voltage [V]",
+                           "gamma [1/s]", "−27.2 %", "39.7 *", "7.2 *", "not physical: delay would be below 0 s",
+                           "Residual on the test record", "Declared: the input is the command."})
+    CHECK_THAT(page, Contains(text));
+  CHECK_THAT(page, !Contains("1.01 *"));
+}
+
+TEST_CASE("report: a trace whose arrays do not fit is shown as far as they do") {
+  ordered_json broken = trace();
+  broken["arrays"]["class_after"] = array_of("1", {3}, {1, 2, 3});
+  broken["arrays"]["candidate_p"] = array_of("1", {1}, {0.5});
+  broken["arrays"]["residual_noise"] = array_of("A", {2}, {1, 1});
+  const std::string page = page_of({{"trace", broken}});
+  CHECK_THAT(page, Contains("Missing effect: dead time"));
+  for (const char* absent : {"What is left, by class", "Candidates, best first", "Residual on the test record"})
+    CHECK_THAT(page, !Contains(absent));
+}
+
+TEST_CASE("report: the truth stands beside the parameters, and what the graph shows comes first") {
+  const ordered_json results = {
+      {"hide.secret",
+       {{"type", "bench_properties"}, {"attributes", {{"effect", "dead_time"}}}, {"arrays", ordered_json::object()}}},
+      {"trace.trace", trace()},
+      {"open.reveal", reveal()}};
+  const std::string page = page_of(results, "bodeflow: 1\nphases: []\nsummary: {show: [trace.trace, open.reveal]}\n");
+  CHECK_THAT(page, Contains("<b>Right: the bench hid dead_time (1.4e-06 s).</b>"));
+  CHECK_THAT(page, Contains("Parameters beside the true ones"));
+  const auto trace_at = page.find("<section id=\"trace.trace\">"), reveal_at = page.find("<section id=\"open.reveal\">"),
+             secret_at = page.find("<section id=\"hide.secret\">");
+  REQUIRE(secret_at != std::string::npos);
+  CHECK(trace_at < reveal_at);
+  CHECK(reveal_at < secret_at);
+}

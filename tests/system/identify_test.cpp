@@ -1,6 +1,8 @@
 #include <complex>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "bench_data.hpp"
 #include "catch.hpp"
@@ -144,6 +146,7 @@ TEST_CASE("identify finds a frequency response in the file by reading it") {
   REQUIRE(ended.exit_code == 0);
   CHECK(holds(ended.err, "60 points, 0.5 to 30 Hz"));
   CHECK(holds(ended.out, "Identify plant.csv by maximum_likelihood.model"));
+  CHECK(holds(ended.out, "Next: bodeflow report "));
   const auto denominator = list(model_in(folder), "denominator"), numerator = list(model_in(folder), "numerator");
   CHECK(denominator[1] / denominator[0] == Approx(4.0).epsilon(1e-6));
   CHECK(denominator[2] / denominator[0] == Approx(900.0).epsilon(1e-6));
@@ -268,4 +271,25 @@ TEST_CASE("identify names the line and column of a file that is broken") {
                        "koopmans_levin", "--order", "1"},
                       3),
               "channels"));
+}
+
+TEST_CASE("identify prints a next command that runs as typed") {
+  const Folder folder;
+  folder.write("bench.csv", bench_csv());
+  const auto ended = run_bodeflow(with(kKoopmansLevin, {"--order", "2", "--set", "ratio=1"}), folder.path());
+  REQUIRE(ended.exit_code == 0);
+  const auto at = ended.out.find("bodeflow compare ");
+  REQUIRE(at != std::string::npos);
+  std::istringstream line(ended.out.substr(at + 9, ended.out.find('\n', at) - at - 9));
+  Words words{std::istream_iterator<std::string>(line), {}};
+  const auto compared = run_bodeflow(with(words, {"--out", "compared"}), folder.path());
+  INFO(compared.err);
+  CHECK(compared.exit_code == 0);
+}
+
+TEST_CASE("identify refuses an order that is given twice and differs") {
+  const Folder folder;
+  folder.write("bench.csv", bench_csv());
+  CHECK(holds(refusal(folder, with(kKoopmansLevin, {"--order", "2", "--set", "order=3"}), 2),
+              "--order 2 and --set order=3 contradict each other; give one of them"));
 }

@@ -133,8 +133,13 @@ class IdentifyGraph {
   Refusal set_order() {
     if (!has(method_, "order"))
       return command_.order.empty() ? "" : fmt::format("--order: the order of a model by {} is fixed", method_.id);
-    const bool by_set =
-        std::any_of(command_.sets.begin(), command_.sets.end(), [](const auto& s) { return s.rfind("order=", 0) == 0; });
+    bool by_set = false;
+    for (const std::string& set : command_.sets) {
+      if (set.rfind("order=", 0) != 0) continue;
+      by_set = true;
+      if (!command_.order.empty() && set.substr(6) != command_.order)
+        return fmt::format("--order {} and --set {} contradict each other; give one of them", command_.order, set);
+    }
     if (command_.order.empty() && !by_set) return "--order is missing: the number of poles, or auto";
     add_setting("order", command_.order);
     return {};
@@ -157,10 +162,11 @@ int refuse(const std::string& text, int code) {
   return code;
 }
 
-/// What to type next: the comparison, with data of one's own where these were samples.
+/// What to type next: the comparison where these were samples of one input and one output, the report otherwise.
 std::string next_command(const IdentifyCommand& command, DataKind kind, const std::filesystem::path& directory) {
-  std::string text = "bodeflow compare " + shell_word(directory.string());
-  if (kind == DataKind::frequency_response) return text;
+  const bool comparable = kind == DataKind::time_series && command.data.inputs.size() == 1 && command.data.outputs.size() == 1;
+  if (!comparable) return "Next: bodeflow report " + shell_word(directory.string());
+  std::string text = "Next, with other data if you have some: bodeflow compare " + shell_word(directory.string());
   text += " --data " + shell_word(command.data.file);
   for (const auto& input : command.data.inputs) text += " --input " + shell_word(input);
   for (const auto& output : command.data.outputs) text += " --output " + shell_word(output);
@@ -182,8 +188,7 @@ int identify(const Session& session, const IdentifyCommand& command) {
     say_warning(command.data.file + " holds a frequency response: --input and --output name nothing in it");
 
   const RanGraph ran = run_one_off(session, registry, {"identify", graph.text(), graph.overrides, command.out, command.json});
-  if (ran.exit_code == kDone && !command.json)
-    fmt::print("Next, with other data if you have some: {}\n", next_command(command, *kind, ran.directory));
+  if (ran.exit_code == kDone && !command.json) fmt::print("{}\n", next_command(command, *kind, ran.directory));
   return ran.exit_code;
 }
 

@@ -114,8 +114,9 @@ TEST_CASE("averaging_dft: the record holds the response and what it was made fro
   CHECK(r.integer("period") == kPeriod);
   CHECK(r.number("sample_rate") == 1000.0);
   CHECK(r.integer("dropped_samples") == 2 * kPeriod + 20);
-  double largest = 0.0;  // of the five periods after the two that are skipped
-  for (const double u : part(signals(7 * kPeriod + 20), 2 * kPeriod, 5 * kPeriod)[0][0]) largest = std::max(largest, std::abs(u));
+  const auto averaged = part(signals(7 * kPeriod + 20), 2 * kPeriod, 5 * kPeriod);  // two periods are skipped
+  double largest = 0.0;
+  for (const double u : averaged[0][0]) largest = std::max(largest, std::abs(u));
   CHECK(r.numbers("input_amplitude") == std::vector<double>{largest});
   CHECK(r.integer("correlated_lines") == 0);
   CHECK(r.texts("output_names") == std::vector<std::string_view>{"motor", "load"});

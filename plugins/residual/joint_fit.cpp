@@ -1,7 +1,6 @@
 #include "joint_fit.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <bodeflow/numerics/levenberg_marquardt.hpp>
 #include <cmath>
 #include <limits>
@@ -123,10 +122,6 @@ Extension JointModel::extension(const Eigen::VectorXd& values) const {
 
 Eigen::VectorXcd JointModel::steady_state(const Experiment& experiment, const Eigen::VectorXd& values) const {
   return base->steady_state(experiment, values, extension(values));
-}
-
-bool JointModel::linear() const {
-  return std::all_of(effects.begin(), effects.end(), [](const Effect* e) { return e->linear(); });
 }
 
 Eigen::VectorXd whitened(const Experiment& e, const Eigen::VectorXcd& predicted) {

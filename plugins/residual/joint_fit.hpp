@@ -16,7 +16,6 @@ struct JointModel {
   std::vector<Parameter> parameters() const;
   Extension extension(const Eigen::VectorXd& values) const;
   Eigen::VectorXcd steady_state(const Experiment& experiment, const Eigen::VectorXd& values) const;
-  bool linear() const;
 };
 
 /// Measured minus predicted lines in units of the noise's standard deviation: the real part at zero frequency, then real and

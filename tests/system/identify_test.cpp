@@ -59,6 +59,10 @@ TEST_CASE("identify gives a model with its covariance from a CSV of noisy signal
   CHECK(holds(ended.out, "/out/report.html"));
   CHECK(holds(ended.out, "/out --data bench.csv --input voltage --output current"));
 
+  const std::string page = folder.read("out/report.html");
+  CHECK(holds(page, "What was done"));
+  CHECK(page.find("<dt>summary</dt>") == std::string::npos);
+
   const auto model = model_in(folder);
   CHECK(model["type"] == "model");
   CHECK(model["attributes"]["method"] == "koopmans_levin.model");

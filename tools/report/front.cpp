@@ -133,7 +133,9 @@ void add_what_was_done(Page& page, const RunData& run, const Registry& registry)
   for (const auto& given : run.phases) {
     if (!given.name.empty()) page.heading("Phase " + given.name);
     Facts settings;
-    for (const auto& [name, value] : given.settings) settings.emplace_back(name, shortened(value, 200));
+    // What the summary shows is no part of what was done.
+    for (const auto& [name, value] : given.settings)
+      if (name != "summary") settings.emplace_back(name, shortened(value, 200));
     add_facts(page.body(), settings);
     if (graph)
       for (const auto& phase : graph->phases)

@@ -162,7 +162,9 @@ void add_residuals(Page& page, const Response& response, const Model& model) {
     }
   if (charts.empty()) return;
   page.heading("Residuals");
-  page.grid(charts, "Many more lines outside the region than expected: the model lacks something that the data show.");
+  page.grid(
+      charts,
+      "Of a right model 5 % of the lines lie outside the region; many more mean that it lacks something that the data show.");
   add_table(page.body(), table);
 }
 

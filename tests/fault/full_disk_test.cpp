@@ -116,5 +116,5 @@ TEST_CASE("the limit for the size of a file ends the recording in the same way")
   }
   CHECK(error == "can't write '" + (directory / "data.h5").string() +
                      "': the limit for the size of a file is reached (ulimit -f, 6000000 bytes)");
-  check_what_is_left(directory, 2 * 1024 * 1024 / 16);
+  check_what_is_left(directory, 1024 * 1024 / 16);
 }

@@ -45,6 +45,21 @@ TEST_CASE("the standstill graph identifies the motor from both bands, within its
   CHECK(with < number(motor, "parameters", 3));
 }
 
+TEST_CASE("the standstill graph shows what is identifiable, and after it what follows where Ls = Lr is assumed") {
+  const Folder folder;
+  const auto ended =
+      run_bodeflow({"run", BODEFLOW_SOURCE_DIR "/graphs/castaldi_2002/standstill.yaml", "--out", "out"}, folder.path());
+  REQUIRE(ended.exit_code == 0);
+  const auto identifiable = ended.out.find("  Lr/Rr [s]"), assumed = ended.out.find("  assumption: Ls = Lr: ");
+  REQUIRE(identifiable != std::string::npos);
+  REQUIRE(assumed != std::string::npos);
+  CHECK(identifiable < assumed);
+  CHECK(ended.out.find("  Rr [ohm] ", assumed) != std::string::npos);
+  const std::string page = folder.read("out/report.html");
+  CHECK(page.find("Assumption: Ls = Lr: another ratio") != std::string::npos);
+  CHECK(page.find("Rr [ohm]") != std::string::npos);
+}
+
 TEST_CASE("the amplitude graph stops below the level at which saturation shows", "[long]") {
   const Folder folder;
   const Json all = result(folder, "amplitude.yaml");

@@ -133,6 +133,15 @@ bool print_model(const Json& record) {
   return true;
 }
 
+bool print_derived_parameters(const Json& record) {
+  const Values parameters = values(record, "parameters");
+  if (parameters.empty()) return false;
+  if (const std::string assumption = text(attribute(record, "assumption")); !assumption.empty())
+    fmt::print("  assumption: {}\n", assumption);
+  print_parameters(record, parameters);
+  return true;
+}
+
 bool print_monte_carlo(const Json& record) {
   const Values mean = values(record, "mean"), deviation = values(record, "std");
   if (mean.empty() || deviation.data.size() != mean.data.size()) return false;

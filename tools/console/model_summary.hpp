@@ -9,6 +9,8 @@ namespace bodeflow::tools {
 
 /// Parameters with deviations, poles in Hz with damping, cost beside the expected one.
 bool print_model(const nlohmann::ordered_json& record);
+/// What follows from a model: parameters with deviations, and the assumption that they rest on.
+bool print_derived_parameters(const nlohmann::ordered_json& record);
 /// The fits of each model, then parameters and poles side by side.
 bool print_comparison(const nlohmann::ordered_json& record);
 /// Mean and spread beside truth and published figures.

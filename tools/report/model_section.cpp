@@ -283,4 +283,13 @@ bool add_model(Page& page, const Record& record, std::span<const Response> respo
   return true;
 }
 
+bool add_derived_parameters(Page& page, const Record& record) {
+  if (parameters_of(record) == nullptr) return false;
+  if (const std::string assumption = record.text("assumption"); !assumption.empty())
+    page.paragraph("Assumption: " + assumption + ".");
+  add_parameters(page, record);
+  add_attributes(page, record, {"parameter_names", "parameter_units", "assumption"});
+  return true;
+}
+
 }  // namespace bodeflow::tools::report

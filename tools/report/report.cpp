@@ -43,6 +43,7 @@ bool add_by_type(Page& page, const Record& record, std::span<const Response> res
   if (record.type == "spectral_levels") return add_spectral_levels(page, record);
   if (record.type == "spectral_matrix") return add_spectral_matrix(page, record);
   if (record.type == "model") return add_model(page, record, responses);
+  if (record.type == "parameters") return add_derived_parameters(page, record);
   if (record.type == "monte_carlo") return add_monte_carlo(page, record);
   if (record.type == "noise_variances") return add_noise_variances(page, record);
   if (record.type == "comparison") return add_comparison(page, record);

@@ -15,6 +15,7 @@ bool add_spectral_levels(Page& page, const Record& record);
 bool add_spectral_matrix(Page& page, const Record& record);
 /// `responses`: all of the run, for the comparison with data.
 bool add_model(Page& page, const Record& record, std::span<const Response> responses);
+bool add_derived_parameters(Page& page, const Record& record);
 bool add_monte_carlo(Page& page, const Record& record);
 /// Noise of input and output by band, and the curves of the Frisch scheme.
 bool add_noise_variances(Page& page, const Record& record);

@@ -52,6 +52,12 @@ void put(RecordBuilder& record, const char* name, const std::string& unit, std::
   }
 }
 
+template <class T, class Matrix>
+void put(RecordBuilder& record, const char* name, const std::string& unit, std::initializer_list<std::uint64_t> shape,
+         const Matrix& m) {
+  put<T>(record, name, unit, std::span<const std::uint64_t>(shape.begin(), shape.size()), m);
+}
+
 /// Adds a list.
 template <class T, class Vector>
 void put_list(RecordBuilder& record, const char* name, const std::string& unit, const Vector& values) {

@@ -3,17 +3,13 @@
 #include <cmath>
 #include <limits>
 
+#include "records/record_arrays.hpp"
 #include "trace_words.hpp"
 
 namespace bodeflow::residual {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-void put(RecordBuilder& record, const char* name, const std::string& unit, const Eigen::VectorXd& values) {
-  const auto data = record.array<double>(name, unit, {static_cast<std::uint64_t>(values.size())});
-  std::copy(values.begin(), values.end(), data.begin());
-}
 
 /// One value a candidate.
 template <class Value>
@@ -56,8 +52,8 @@ void put_effect(RecordBuilder& r, const Trace& t) {
   }
   r.set("effect_parameter_names", names);
   r.set("effect_parameter_units", units);
-  put(r, "effect_parameters", "", values);
-  put(r, "effect_parameter_std", "", std);
+  records::put_list<double>(r, "effect_parameters", "", values);
+  records::put_list<double>(r, "effect_parameter_std", "", std);
 }
 
 void put_base(RecordBuilder& r, const Trace& t, const BaseModel& base) {
@@ -71,10 +67,10 @@ void put_base(RecordBuilder& r, const Trace& t, const BaseModel& base) {
   r.set("conventions", base.conventions());
   r.set("parameter_names", names);
   r.set("parameter_units", units);
-  put(r, "parameters_before", "", t.base.fit.values.head(count));
-  put(r, "parameters_before_std", "", t.base.fit.std.head(count));
-  put(r, "parameters_after", "", t.extended().fit.values.head(count));
-  put(r, "parameters_after_std", "", t.extended().fit.std.head(count));
+  records::put_list<double>(r, "parameters_before", "", t.base.fit.values.head(count));
+  records::put_list<double>(r, "parameters_before_std", "", t.base.fit.std.head(count));
+  records::put_list<double>(r, "parameters_after", "", t.extended().fit.values.head(count));
+  records::put_list<double>(r, "parameters_after_std", "", t.extended().fit.std.head(count));
 }
 
 void put_tests(RecordBuilder& r, const char* multiple_name, const char* p_name, const std::vector<RecordTests>& tests,
@@ -121,11 +117,11 @@ void put_all_candidates(RecordBuilder& r, const Trace& t) {
 /// Root mean square values of the lines of the test record: sqrt(2) |Y|.
 void put_spectra(RecordBuilder& r, const Trace& t, const Experiment& e) {
   const double rms = std::sqrt(2.0);
-  put(r, "frequency", "Hz", e.frequency_hz);
-  put(r, "residual_before", e.output_unit, rms * t.residual_before.cwiseAbs());
-  put(r, "residual_after", e.output_unit, rms * t.residual_after.cwiseAbs());
-  put(r, "residual_noise", e.output_unit, rms * e.variance.cwiseSqrt());
-  put(r, "measured", e.output_unit, rms * e.output.cwiseAbs());
+  records::put_list<double>(r, "frequency", "Hz", e.frequency_hz);
+  records::put_list<double>(r, "residual_before", e.output_unit, rms * t.residual_before.cwiseAbs());
+  records::put_list<double>(r, "residual_after", e.output_unit, rms * t.residual_after.cwiseAbs());
+  records::put_list<double>(r, "residual_noise", e.output_unit, rms * e.variance.cwiseSqrt());
+  records::put_list<double>(r, "measured", e.output_unit, rms * e.output.cwiseAbs());
   const auto kind = r.array<std::int64_t>("kind", "", {e.kind.size()});
   for (std::size_t k = 0; k < e.kind.size(); ++k) kind[k] = static_cast<std::int64_t>(e.kind[k]);
 }
@@ -157,7 +153,8 @@ RecordBuilder write_trace(const Trace& t, const TraceData& data, const BaseModel
   }
   r.set("records", names);
   r.set("record_checksums", checksums);
-  put(r, "record_levels", e.input_unit, Eigen::Map<Eigen::VectorXd>(levels.data(), static_cast<Eigen::Index>(levels.size())));
+  records::put_list<double>(r, "record_levels", e.input_unit,
+                            Eigen::Map<Eigen::VectorXd>(levels.data(), static_cast<Eigen::Index>(levels.size())));
   put_spectra(r, t, e);
   return r;
 }

@@ -11,17 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 using Shape = std::initializer_list<std::uint64_t>;
 
-/// Copies a matrix row by row, as records are; `shape` has as many elements as the matrix.
-template <class T, class Matrix>
-void put(RecordBuilder& record, const char* name, const std::string& unit, Shape shape, const Matrix& m) {
-  const auto data = record.array<T>(name, unit, shape);
-  std::size_t at = 0;
-  for (Eigen::Index k = 0; k < m.rows(); ++k) {
-    for (Eigen::Index i = 0; i < m.cols(); ++i) data[at++] = m(k, i);
-  }
-}
-
-/// The same, left out where the matrix is empty.
+/// Adds a matrix as an array of that shape, left out where it is empty.
 void put_if_any(RecordBuilder& record, const char* name, const std::string& unit, Shape shape, const Eigen::MatrixXd& m) {
   if (m.size() > 0) put<double>(record, name, unit, shape, m);
 }

@@ -99,12 +99,7 @@ void add_compare(CLI::App& app, Session& session) {
   command->add_option("--model", options->key, "Name of the model in their results (identify otherwise, or the only one)")
       ->type_name("NAME");
   command->add_option("--data", options->data.file, "Measured samples over time, in a file")->type_name("FILE");
-  command->add_option("--input", options->data.inputs, "Column that excites the plant")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  command->add_option("--output", options->data.outputs, "Column that the plant answers with")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
+  add_columns_to(*command, options->data);
   command->add_option("--rate", options->data.rate, "Samples per second, where the file does not say them")->type_name("HZ");
   command->add_option("--steps", options->steps, "Samples ahead of the prediction (10 otherwise)")->type_name("K");
   command->add_option("--set", options->sets, "PARAM=VALUE: a parameter of validation.comparison")

@@ -73,6 +73,14 @@ std::string data_block(const DataOptions& options, DataKind kind) {
   return text + "}";
 }
 
+void add_columns_to(CLI::App& command, DataOptions& options) {
+  const auto add = [&](const char* name, std::vector<std::string>& columns, const char* what) {
+    command.add_option(name, columns, what)->type_name("NAME")->allow_extra_args(false);
+  };
+  add("--input", options.inputs, "Column that excites the plant");
+  add("--output", options.outputs, "Column that the plant answers with");
+}
+
 tl::expected<DataKind, std::string> data_kind(const DataOptions& options, Registry& registry) {
   std::error_code error;
   if (!std::filesystem::exists(options.file, error)) return tl::unexpected(options.file + ": no such file");

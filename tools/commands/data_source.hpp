@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -14,6 +15,9 @@ struct DataOptions {
   std::vector<std::string> inputs, outputs;  ///< names of columns
   std::string rate;                          ///< such as "10 kHz"; empty: the file's own
 };
+
+/// Adds --input and --output.
+void add_columns_to(CLI::App& command, DataOptions& options);
 
 enum class DataKind { time_series, frequency_response };
 

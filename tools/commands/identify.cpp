@@ -198,12 +198,7 @@ void add_identify(CLI::App& app, Session& session) {
   auto* command = app.add_subcommand("identify", "Identify a model from a data file");
   auto options = std::make_shared<IdentifyCommand>();
   command->add_option("data", options->data.file, "Samples over time, or a frequency response, in a file")->required();
-  command->add_option("--input", options->data.inputs, "Column that excites the plant")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  command->add_option("--output", options->data.outputs, "Column that the plant answers with")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
+  add_columns_to(*command, options->data);
   command->add_option("--method", options->method, "How: a block of role 'identifier', such as maximum_likelihood")
       ->required()
       ->type_name("ID");

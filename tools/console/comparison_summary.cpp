@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "console/columns.hpp"
 #include "console/console.hpp"
 #include "console/model_summary.hpp"
 #include "console/record_values.hpp"
@@ -13,14 +14,6 @@ namespace {
 constexpr std::size_t kMostRows = 30;
 constexpr std::size_t kMostModels = 4;  ///< side by side
 constexpr int kName = 22;
-
-std::string cell(double value, int width, int digits) {
-  return std::isfinite(value) ? fmt::format("{:>{}.{}g}", value, width, digits) : fmt::format("{:>{}}", "-", width);
-}
-
-std::string shortened(const std::string& text, std::size_t most) {
-  return text.size() <= most ? text : text.substr(0, most - 3) + "...";
-}
 
 void print_fits(const Json& record, const Json& models) {
   const Values fit = values(record, "fit"), ahead = values(record, "prediction_fit"), residual = values(record, "residual_std"),
@@ -52,9 +45,8 @@ void print_parameters(const Json& record, const Json& models) {
   if (differs) head += fmt::format(" {:>11}", "apart [std]");
   fmt::print("  {}\n", dim(head));
   for (std::size_t i = 0; i < std::min(count, kMostRows); ++i) {
-    const std::string unit = text_at(attribute(record, "parameter_units"), i);
     const std::string name =
-        text_at(attribute(record, "parameter_names"), i) + (unit.empty() || unit == "1" ? "" : " [" + unit + "]");
+        named(text_at(attribute(record, "parameter_names"), i), text_at(attribute(record, "parameter_units"), i));
     std::string row = fmt::format("{:<{}}", shortened(name, kName), kName);
     for (std::size_t m = 0; m < shown; ++m) row += " " + cell(parameters.at(m, i), 13, 6) + " " + cell(deviations.at(m, i), 9, 2);
     if (differs) row += " " + cell(difference.at(1, i), 11, 2);

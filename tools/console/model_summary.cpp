@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "console/columns.hpp"
 #include "console/console.hpp"
 #include "console/record_values.hpp"
 
@@ -13,19 +14,6 @@ namespace {
 
 constexpr std::size_t kMostRows = 30;
 constexpr int kWidth = 26;  ///< of a name with its unit
-
-/// A number in a column; "-" where there is none.
-std::string cell(double value, int width, int digits) {
-  return std::isfinite(value) ? fmt::format("{:>{}.{}g}", value, width, digits) : fmt::format("{:>{}}", "-", width);
-}
-
-std::string named(const std::string& name, const std::string& unit) {
-  return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
-}
-
-std::string shortened(const std::string& text, std::size_t most) {
-  return text.size() <= most ? text : text.substr(0, most - 3) + "...";
-}
 
 void print_more(std::size_t count) {
   if (count > kMostRows) fmt::print("  {}\n", dim(fmt::format("and {} more in result.json", count - kMostRows)));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "console/columns.hpp"
 #include "console/console.hpp"
 #include "console/record_values.hpp"
 
@@ -12,14 +13,6 @@ namespace {
 
 constexpr std::size_t kScreen = 110;  ///< characters of a line
 constexpr int kName = 28;
-
-std::string cell(double value, int width = 12, int digits = 5) {
-  return std::isfinite(value) ? fmt::format("{:>{}.{}g}", value, width, digits) : fmt::format("{:>{}}", "-", width);
-}
-
-std::string named(const std::string& name, const std::string& unit) {
-  return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
-}
 
 /// Prints words up to the end of the screen, further lines indented alike.
 void print_wrapped(const std::string& text, std::size_t indent) {

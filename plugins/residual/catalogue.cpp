@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "effects/dead_time.hpp"
-#include "effects/delay.hpp"
-#include "effects/saturation.hpp"
+#include "old_effects/dead_time.hpp"
+#include "old_effects/delay.hpp"
+#include "old_effects/saturation.hpp"
 #include "records/signals.hpp"
 
 namespace bodeflow::residual {

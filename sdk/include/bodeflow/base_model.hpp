@@ -54,6 +54,8 @@ class BaseModel {
   /// Where derivatives are formed: the corner of the low-pass filter, applied forth and back to input and output; 0: none.
   virtual double filter_hz() const { return 0.0; }
   virtual Timing timing() const { return {}; }
+  /// Unit of the output over the first input where physics fixes its dimension ("ohm"): records with another are refused; "": any.
+  virtual std::string response_unit() const { return {}; }
   /// What is declared beside the parameters (hold, delay, which input), in words.
   virtual std::vector<std::string> conventions() const { return {}; }
 

@@ -70,6 +70,8 @@ class DescribeEffect {
   DescribeEffect& steps_per_sample(int steps) { return d_.steps_per_sample = steps, *this; }
   DescribeEffect& rough() { return d_.rough = true, *this; }
   DescribeEffect& nonstationary() { return d_.nonstationary = true, *this; }
+  /// A map that adds a constant, and nothing else.
+  DescribeEffect& constant() { return d_.memoryless_linear = true, *this; }
   DescribeEffect& equivalent_to(std::vector<std::string> names, std::string_view separation) {
     d_.equivalents = std::move(names);
     d_.separation = separation;

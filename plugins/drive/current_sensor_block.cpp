@@ -1,5 +1,7 @@
 #include "current_sensor_block.hpp"
 
+#include <algorithm>
+
 #include "bench_properties.hpp"
 #include "records/signals.hpp"
 #include "sensor_stream.hpp"
@@ -19,7 +21,9 @@ void CurrentSensor::describe(Describe& d) {
       .in_place()
       .cost_ns(40);
   d.doc(
-      "y[n] = gain x_s[n] + offset + hum sin(2 pi hum_frequency n / rate + hum_phase) + noise e[n], x_s the current behind a lag "
+      "y[n] = g[n] x_s[n] + offset - correction + hum sin(2 pi hum_frequency n / rate + hum_phase) + noise e[n], g[n] = gain (1 "
+      "+ "
+      "wobble sin(2 pi wobble_frequency n / rate)), x_s the current behind a lag "
       "and a "
       "transport delay, exp(-s delay) / (1 + s lag). Samples are taken synchronously with the carrier, at the start of each PWM "
       "period, where the ripple of the current crosses zero. What lies between the samples is not known to the sensor: lag and "
@@ -33,20 +37,30 @@ void CurrentSensor::describe(Describe& d) {
   d.parameter("hum", 0.0).unit("A").range(0, 1e6).doc("peak value of the mains hum");
   d.parameter("hum_frequency", 50.0).unit("Hz").range(0, kHighestHum_hz).doc("of the hum");
   d.parameter("hum_phase", 0.0).unit("rad").range(-7, 7).doc("of the hum, at the first sample");
+  d.parameter("correction", 0.0)
+      .unit("A")
+      .range(-1e6, 1e6)
+      .live()
+      .doc("subtracted from the output: a known offset is taken away");
+  d.parameter("wobble", 0.0).unit("1").range(0, 1).doc("relative amplitude of the gain, which goes up and down");
+  d.parameter("wobble_frequency", 0.7).unit("Hz").range(0, kHighestHum_hz).doc("of the wobble");
   d.optional<std::int64_t>("seed").range(0, 9e18).doc("fixes the noise; without it the run's seed and the block's name do");
   d.stream_in(in).doc("true currents [A]");
   d.stream_out(out).same_as(in).doc("measured currents [A]");
   d.message_in(properties)
       .optional()
       .record_type("bench_properties")
-      .doc("hidden current_gain, current_offset, current_lag, current_delay, current_noise, current_hum, current_hum_frequency");
+      .doc(
+          "hidden current_gain, current_offset, current_lag, current_delay, current_noise, current_hum, current_hum_frequency, "
+          "current_wobble, current_wobble_frequency");
 }
 
 void CurrentSensor::configure(const Parameters& p) {
-  declared_.errors = {p.number("gain"), p.number("offset"),        p.number("noise"),
-                      p.number("hum"),  p.number("hum_frequency"), p.number("hum_phase")};
+  declared_.errors = {p.number("gain"),          p.number("offset"),    p.number("noise"),  p.number("hum"),
+                      p.number("hum_frequency"), p.number("hum_phase"), p.number("wobble"), p.number("wobble_frequency")};
   declared_.lag_s = p.number("lag");
   declared_.delay_s = p.number("delay");
+  change(p);
   own_seed_ = p.has("seed");
   if (own_seed_) seed_ = static_cast<std::uint64_t>(p.integer("seed"));
 }
@@ -82,8 +96,12 @@ void CurrentSensor::receive(int, const RecordView& record, Io& io) {
   take_property(record, "current_noise", 0, 1e6, actual_.errors.noise_std);
   take_property(record, "current_hum", 0, 1e6, actual_.errors.hum_amplitude);
   take_property(record, "current_hum_frequency", 0, kHighestHum_hz, actual_.errors.hum_frequency_hz);
+  take_property(record, "current_wobble", 0, 1, actual_.errors.wobble);
+  take_property(record, "current_wobble_frequency", 0, kHighestHum_hz, actual_.errors.wobble_frequency_hz);
   set_dynamics();
 }
+
+void CurrentSensor::change(const Parameters& p) { correction_ = p.number("correction"); }
 
 void CurrentSensor::process(Io& io) {
   for (int c = 0; c < channels_; ++c) {
@@ -92,6 +110,7 @@ void CurrentSensor::process(Io& io) {
     check_finite(x, c, io.position());
     dynamics_[static_cast<std::size_t>(c)].run(x, y);
     add_errors(actual_.errors, rate_hz_, io.position(), random_[static_cast<std::size_t>(c)], y);
+    if (correction_ != 0) std::transform(y.begin(), y.end(), y.begin(), [this](double v) { return v - correction_; });
   }
 }
 

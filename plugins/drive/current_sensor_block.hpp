@@ -22,6 +22,7 @@ class CurrentSensor final : public Block {
   void activate(const Activation& a) override;
   void receive(int port, const RecordView& record, Io& io) override;
   void process(Io& io) override;
+  void change(const Parameters& p) override;
   void reset() override;
 
  private:
@@ -37,6 +38,7 @@ class CurrentSensor final : public Block {
   std::uint64_t seed_ = 0;
   int channels_ = 0;
   double rate_hz_ = 0.0;
+  double correction_ = 0.0;
   std::vector<SensorDynamics> dynamics_;
   std::vector<numerics::Random> random_;
 };

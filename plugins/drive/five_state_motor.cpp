@@ -58,11 +58,16 @@ void FiveStateMotor::interval(double length, AlphaBeta v, double load) {
   }
 }
 
-void FiveStateMotor::advance(AlphaBeta voltage, double load_torque) { interval(period_s_, voltage, load_torque); }
+void FiveStateMotor::advance(AlphaBeta voltage, double load_torque) {
+  interval(period_s_, {voltage.alpha - drop_.alpha, voltage.beta - drop_.beta}, load_torque);
+}
 
 void FiveStateMotor::advance(const std::array<Pulse, 3>& legs, double link, double load_torque) {
   const VoltageSteps steps = voltage_steps(legs, link, period_s_);
-  for (std::size_t k = 0; k < steps.count; ++k) interval(steps.length[k], steps.voltage[k], load_torque);
+  for (std::size_t k = 0; k < steps.count; ++k) {
+    const AlphaBeta v{steps.voltage[k].alpha - drop_.alpha, steps.voltage[k].beta - drop_.beta};
+    interval(steps.length[k], v, load_torque);
+  }
 }
 
 MotorOutputs FiveStateMotor::outputs() const {

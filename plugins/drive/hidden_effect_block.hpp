@@ -6,7 +6,7 @@
 
 namespace bodeflow::drive {
 
-/// drive.hidden_effect: draws what a bench hides.
+/// drive.hidden_effect: draws what a bench with a motor at an inverter hides.
 class HiddenEffectBlock final : public Block {
  public:
   static constexpr MessageOut out{0, "out"};
@@ -17,8 +17,7 @@ class HiddenEffectBlock final : public Block {
   void finish(Io& io) override;
 
  private:
-  std::vector<std::string> names_;
-  std::array<SizeRange, kEffects.size()> ranges_{};
+  Draw draw_;
   MotorParameters nominal_;
   double spread_ = 0.0;
   bool own_seed_ = false;

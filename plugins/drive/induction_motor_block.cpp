@@ -70,7 +70,7 @@ void InductionMotor::describe(Describe& d) {
       .record_type("bench_properties")
       .doc(
           "hidden properties that replace parameters: rs, rr, ls, lr, lm, saturation_current, saturation_share, bar_height, "
-          "iron_loss_resistance, resistance_drift");
+          "iron_loss_resistance, resistance_drift, contact_resistance, rectifying_resistance");
   describe_motor_form(d);
   d.parameter("pole_pairs", std::int64_t{1}).range(1, 1000).doc("electrical over mechanical speed");
   d.parameter("standstill", false).doc("the rotor is locked; with one channel of voltage it stands still anyway");
@@ -97,6 +97,16 @@ void InductionMotor::describe(Describe& d) {
       .range(-0.9, 10)
       .doc("final relative rise of rs: rs (1 + drift (1 - exp(-t / thermal_time)))");
   d.parameter("thermal_time", 300.0).unit("s").above(0).below(1e9).doc("time constant of the drift");
+  d.parameter("contact_resistance", 0.0)
+      .unit("ohm")
+      .range(0, 1e6)
+      .doc("of a loose terminal of phase a: comes and goes at random, each state lasting 0.4 s in the mean; 0: firm");
+  d.parameter("rectifying_resistance", 0.0)
+      .unit("ohm")
+      .range(0, 1e6)
+      .doc("of a corroded terminal of phase a: the drop is this times |i|; 0: none");
+  d.optional<std::int64_t>("seed").range(0, 9e18).doc(
+      "fixes the loose terminal; without it the run's seed and the block's name do");
 }
 
 void InductionMotor::configure(const Parameters& p) {
@@ -106,6 +116,9 @@ void InductionMotor::configure(const Parameters& p) {
                    p.number("resistance_drift"),   p.number("thermal_time")};
   given_.mechanics = {static_cast<double>(p.integer("pole_pairs")), p.has("inertia") ? p.number("inertia") : 0.0,
                       p.number("friction"), p.number("initial_speed"), p.boolean("standstill")};
+  given_faults_ = {p.number("contact_resistance"), p.number("rectifying_resistance")};
+  own_seed_ = p.has("seed");
+  if (own_seed_) seed_ = static_cast<std::uint64_t>(p.integer("seed"));
 }
 
 /// The setup with the rotor locked where nothing can turn it.
@@ -172,7 +185,8 @@ void InductionMotor::advise(const Facts& f, Advice& a) {
   }
 }
 
-void InductionMotor::activate(const Activation&) {
+void InductionMotor::activate(const Activation& a) {
+  if (!own_seed_) seed_ = a.seed;
   if (axes_ == 0) fail("the motor has no supply: connect an inverter to 'legs', or a voltage to 'voltage'");
   reset();
   const double step_s = std::clamp(given_.hidden.thermal_time / kWarmSteps, given_.period_s, kSlowestWarmStep);
@@ -184,6 +198,7 @@ void InductionMotor::reset() {
   auto made = make_motor(setup_);
   if (!made) fail(made.error().text);
   motor_ = std::move(*made);
+  take_faults(given_faults_);
   periods_ = 0;
 }
 
@@ -209,6 +224,16 @@ void InductionMotor::receive(int, const RecordView& record, Io&) {
   motor_->set_state(state);
   setup_ = changed;
   if (setup_.hidden.resistance_drift != 0.0) warm();
+  ContactFaults faults = faults_;
+  take_property(record, "contact_resistance", 0.0, kMost, faults.loose_ohm);
+  take_property(record, "rectifying_resistance", 0.0, kMost, faults.rectifying_ohm);
+  take_faults(faults);
+}
+
+void InductionMotor::take_faults(const ContactFaults& faults) {
+  faults_ = faults;
+  contact_.reset();
+  if (faults_.loose_ohm != 0.0 || faults_.rectifying_ohm != 0.0) contact_.emplace(faults_, given_.period_s, seed_);
 }
 
 void InductionMotor::process(Io& io) {
@@ -221,6 +246,7 @@ void InductionMotor::process(Io& io) {
 
 void InductionMotor::advance(Io& io, std::size_t n) {
   if (setup_.hidden.resistance_drift != 0.0 && periods_ % warm_every_ == 0) warm();
+  if (contact_) motor_->set_drop(contact_->drop(motor_->outputs().current.alpha));
   double load = 0.0;
   for (int c = 0; c < io.channels(load_torque); ++c) load += finite_or_fail(io, load_torque, c, n);
   if (!io.connected(voltage)) return advance_legs(io, n, load);

@@ -3,8 +3,10 @@
 #include <bodeflow/block.hpp>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "motor.hpp"
+#include "terminal_contact.hpp"
 
 namespace bodeflow::drive {
 
@@ -37,6 +39,7 @@ class InductionMotor final : public Block {
   void advance_legs(Io& io, std::size_t n, double load);
   void write(Io& io, std::size_t n) const;
   void warm();
+  void take_faults(const ContactFaults& faults);
 
   MotorSetup given_;  // as the parameters say
   MotorSetup setup_;  // with the properties of a record
@@ -44,6 +47,10 @@ class InductionMotor final : public Block {
   std::unique_ptr<Motor> motor_;
   std::uint64_t periods_ = 0;
   std::uint64_t warm_every_ = 1;
+  ContactFaults given_faults_, faults_;
+  std::optional<TerminalContact> contact_;  // where the terminal has a fault
+  bool own_seed_ = false;
+  std::uint64_t seed_ = 0;
 };
 
 }  // namespace bodeflow::drive

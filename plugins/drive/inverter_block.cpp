@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "bench_properties.hpp"
@@ -42,7 +43,10 @@ void Inverter::describe(Describe& d) {
   d.stream_in(measured_current).optional().doc("current as a sensor sees it; needed for the compensation");
   d.stream_out(legs).doc("switching instants and link voltage, for drive.induction_motor");
   d.stream_out(voltage).doc("mean terminal voltage of the period [V]");
-  d.message_in(properties).optional().record_type("bench_properties").doc("hidden properties that replace parameters: dead_time");
+  d.message_in(properties)
+      .optional()
+      .record_type("bench_properties")
+      .doc("hidden properties that replace parameters: dead_time, link_ripple");
   d.message_out(report).record_type("modulation").doc("at the end: periods, how many were over-modulated");
   d.optional<double>("pwm").unit("Hz").above(0).doc("PWM frequency; where given, the streams must have this rate");
   d.parameter("dc_link", 540.0).unit("V").above(0).below(1e6).doc("voltage of the DC link");
@@ -57,7 +61,12 @@ void Inverter::describe(Describe& d) {
       .choices({"none", "sign"})
       .live()
       .doc("sign: each pulse longer or shorter by compensation_time, by the sign of the leg's measured current");
-  d.optional<double>("compensation_time").unit("s").range(0, 1).doc("the dead_time where it is left out");
+  d.optional<double>("compensation_time").unit("s").range(0, 1).live().doc("the dead_time where it is left out");
+  d.parameter("link_ripple", 0.0)
+      .unit("1")
+      .range(0, 0.5)
+      .doc("relative amplitude of a ripple of the link at link_ripple_frequency, which the modulation does not know");
+  d.parameter("link_ripple_frequency", 100.0).unit("Hz").range(0, 1e6).doc("twice the mains for a single-phase supply");
   d.parameter("computation_delay", std::int64_t{0})
       .range(0, 1000)
       .doc("PWM periods from reference and measurement to the switching");
@@ -69,12 +78,16 @@ void Inverter::configure(const Parameters& p) {
   given_.dead_time_s = p.number("dead_time");
   given_.min_max = p.text("modulation") == "min_max";
   averaged_ = p.text("mode") == "averaged";
-  compensation_time_s_ = p.has("compensation_time") ? p.number("compensation_time") : given_.dead_time_s;
   delay_ = p.integer("computation_delay");
+  declared_ripple_ = p.number("link_ripple");
+  ripple_hz_ = p.number("link_ripple_frequency");
   change(p);
 }
 
-void Inverter::change(const Parameters& p) { compensated_ = p.text("compensation") == "sign"; }
+void Inverter::change(const Parameters& p) {
+  compensated_ = p.text("compensation") == "sign";
+  compensation_time_s_ = p.has("compensation_time") ? p.number("compensation_time") : given_.dead_time_s;
+}
 
 void Inverter::resolve(Facts& f) {
   const StreamFacts& u = f.in(reference);
@@ -125,12 +138,14 @@ void Inverter::activate(const Activation& a) {
 
 void Inverter::reset() {
   modulation_ = given_;
+  ripple_ = declared_ripple_;
   periods_ = limited_ = 0;
   largest_ = 0.0;
 }
 
 void Inverter::receive(int, const RecordView& record, Io&) {
   take_property(record, "dead_time", 0.0, kLongestDeadTime * given_.period_s, modulation_.dead_time_s);
+  take_property(record, "link_ripple", 0.0, 0.5, ripple_);
 }
 
 void Inverter::require_currents(Io& io) const {
@@ -153,29 +168,39 @@ AlphaBeta Inverter::read_vector(Io& io, In<double> port, std::size_t n) const {
 void Inverter::process(Io& io) {
   require_currents(io);
   vector_ = io.channels(reference) == 2;
+  if (compensated_ && compensation_time_s_ > kLongestDeadTime * modulation_.period_s) {
+    fail("compensation_time = " + short_number(compensation_time_s_) + " s, allowed: at most a fifth of the PWM period");
+  }
   modulation_.compensation_time_s = compensated_ ? compensation_time_s_ : 0.0;
   for (std::size_t n = 0; n < io.count(); ++n) {
     const AlphaBeta u = read_vector(io, reference, n);
     const AlphaBeta i = io.connected(current) ? read_vector(io, current, n) : AlphaBeta{};
     const AlphaBeta measured = compensated_ ? read_vector(io, measured_current, n) : AlphaBeta{};
     const Switching s = switching(modulation_, u, i, measured);
-    write_legs(io, n, s);
-    io.write(voltage, 0)[n] = s.mean_voltage.alpha;
-    if (vector_) io.write(voltage, 1)[n] = s.mean_voltage.beta;
+    const double rise = 1.0 + link_rise(io.position() + n);
+    write_legs(io, n, s, rise);
+    io.write(voltage, 0)[n] = rise * s.mean_voltage.alpha;
+    if (vector_) io.write(voltage, 1)[n] = rise * s.mean_voltage.beta;
     limited_ += s.limited ? 1 : 0;
     largest_ = std::max(largest_, std::hypot(u.alpha, u.beta));
   }
   periods_ += static_cast<std::int64_t>(io.count());
 }
 
-void Inverter::write_legs(Io& io, std::size_t n, const Switching& s) const {
+double Inverter::link_rise(std::uint64_t period) const {
+  if (ripple_ == 0.0) return 0.0;
+  const double cycles = ripple_hz_ * (static_cast<double>(period) * modulation_.period_s);
+  return ripple_ * std::sin(2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
+}
+
+void Inverter::write_legs(Io& io, std::size_t n, const Switching& s, double rise) const {
   const int count = vector_ ? 3 : 2;
   for (int leg = 0; leg < count; ++leg) {
     const Pulse& pulse = s.legs[static_cast<std::size_t>(leg)];
     io.write(legs, 2 * leg)[n] = pulse.on;
     io.write(legs, 2 * leg + 1)[n] = pulse.off;
   }
-  io.write(legs, 2 * count)[n] = modulation_.dc_link_v;
+  io.write(legs, 2 * count)[n] = rise * modulation_.dc_link_v;
 }
 
 void Inverter::finish(Io& io) {

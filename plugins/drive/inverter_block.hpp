@@ -32,7 +32,8 @@ class Inverter final : public Block {
  private:
   void require_currents(Io& io) const;
   AlphaBeta read_vector(Io& io, In<double> port, std::size_t n) const;
-  void write_legs(Io& io, std::size_t n, const Switching& s) const;
+  void write_legs(Io& io, std::size_t n, const Switching& s, double rise) const;
+  double link_rise(std::uint64_t period) const;
 
   Modulation given_;       // as the parameters say
   Modulation modulation_;  // with the properties of a record
@@ -44,6 +45,7 @@ class Inverter final : public Block {
   bool vector_ = false;  // two channels: alpha and beta
   std::int64_t periods_ = 0, limited_ = 0;
   double largest_ = 0.0;
+  double declared_ripple_ = 0.0, ripple_ = 0.0, ripple_hz_ = 100.0;
 };
 
 }  // namespace bodeflow::drive

@@ -63,6 +63,12 @@ class Motor {
   /// Loops that `state` does not have begin without current.
   virtual void set_state(const MotorState& state) = 0;
   virtual void set_stator_resistance(double ohm) = 0;
+
+  /// A voltage that something in series takes from the terminals, held until another is set.
+  void set_drop(AlphaBeta volts) { drop_ = volts; }
+
+ protected:
+  AlphaBeta drop_;
 };
 
 /// The motor without current. A linear motor at standstill is solved exactly (standstill_motor.hpp), any other by Runge-Kutta

@@ -3,6 +3,7 @@
 #include "classical_tests_block.hpp"
 #include "current_sensor_block.hpp"
 #include "encoder_block.hpp"
+#include "hidden_axis_effect_block.hpp"
 #include "hidden_effect_block.hpp"
 #include "induction_motor_block.hpp"
 #include "inverter_block.hpp"
@@ -12,5 +13,5 @@
 
 using namespace bodeflow::drive;
 
-BODEFLOW_PLUGIN("drive", "0.1.0", CurrentSensor, VoltageSensor, Encoder, HiddenEffectBlock, Supply, PowerMeter, ClassicalTests,
-                Inverter, InductionMotor)
+BODEFLOW_PLUGIN("drive", "0.1.0", CurrentSensor, VoltageSensor, Encoder, HiddenEffectBlock, HiddenAxisEffect, Supply, PowerMeter,
+                ClassicalTests, Inverter, InductionMotor)

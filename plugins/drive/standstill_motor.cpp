@@ -42,8 +42,8 @@ void StandstillMotor::prepare() {
 
 void StandstillMotor::advance(AlphaBeta voltage, double) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(modes_); ++k) {
-    alpha_[k] = decay_[k] * alpha_[k] + full_[k] * voltage.alpha;
-    beta_[k] = decay_[k] * beta_[k] + full_[k] * voltage.beta;
+    alpha_[k] = decay_[k] * alpha_[k] + full_[k] * (voltage.alpha - drop_.alpha);
+    beta_[k] = decay_[k] * beta_[k] + full_[k] * (voltage.beta - drop_.beta);
   }
 }
 
@@ -53,8 +53,8 @@ void StandstillMotor::advance(const std::array<Pulse, 3>& legs, double link, dou
     const auto given = [&](const Pulse& p) { return charge(rate_[k], period_s_ - p.on) - charge(rate_[k], period_s_ - p.off); };
     const double a = given(legs[0]), b = given(legs[1]), c = same ? b : given(legs[2]);
     const AlphaBeta v = clarke(a, b, c);
-    alpha_[k] = decay_[k] * alpha_[k] + drive_[k] * link * v.alpha;
-    beta_[k] = decay_[k] * beta_[k] + drive_[k] * link * v.beta;
+    alpha_[k] = decay_[k] * alpha_[k] + drive_[k] * link * v.alpha - full_[k] * drop_.alpha;
+    beta_[k] = decay_[k] * beta_[k] + drive_[k] * link * v.beta - full_[k] * drop_.beta;
   }
 }
 

@@ -50,7 +50,7 @@ void TurningMotor<kLoops>::advance(const std::array<Pulse, 3>& legs, double link
 
 template <int kLoops>
 void TurningMotor<kLoops>::interval(double length, AlphaBeta voltage) {
-  voltage_ = {voltage.alpha, voltage.beta};
+  voltage_ = {voltage.alpha - drop_.alpha, voltage.beta - drop_.beta};
   const double parts = runge_kutta_parts(length, fastest_ + mechanics_.pole_pairs * std::abs(state_.speed));
   if (!(parts >= 1.0)) {
     state_.speed = parts;

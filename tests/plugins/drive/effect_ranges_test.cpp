@@ -119,8 +119,8 @@ double of_iron_loss(double ohm) {
 }  // namespace
 
 TEST_CASE("hidden effect: the experiment sees the linear effects over their whole default ranges") {
-  const EffectKind &delay = *find_effect("delay"), &lag = *find_effect("sensor_lag"), &bars = *find_effect("skin_effect"),
-                   &iron = *find_effect("iron_loss");
+  const EffectKind &delay = *find_effect(kDriveEffects, "delay"), &lag = *find_effect(kDriveEffects, "sensor_lag"),
+                   &bars = *find_effect(kDriveEffects, "skin_effect"), &iron = *find_effect(kDriveEffects, "iron_loss");
   for (const double size : {delay.least, delay.greatest}) CHECK(of_delay(size) > kSeen);
   for (const double size : {lag.least, lag.greatest}) CHECK(of_lag(size) > kSeen);
   for (const double size : {bars.least, bars.greatest}) CHECK(of_bars(size) > kSeen);

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <bodeflow/effect.hpp>
+
+namespace bodeflow::residual {
+
+/// Dry friction that differs with the direction: F forth and G back.
+class AsymmetricFriction final : public Effect {
+ public:
+  static void describe(DescribeEffect& effect);
+
+  std::vector<FitParameter> parameters(const Situation& s) const override;
+  std::vector<std::vector<double>> starts(const Situation& s) const override;
+  std::string sentence(std::span<const double> value, std::span<const double> std, const Situation& s) const override;
+  Reaction react(const double* p, const Signals& s, const double* memory, double* next) const override;
+};
+
+}  // namespace bodeflow::residual

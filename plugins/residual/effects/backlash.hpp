@@ -1,0 +1,19 @@
+#pragma once
+
+#include <bodeflow/effect.hpp>
+
+namespace bodeflow::residual {
+
+/// A coupling with backlash: around its middle, +-g wide, the stiffness is less by k (all of it where nothing touches): the
+/// torque -k x acts in addition inside, -+k g outside.
+class Backlash final : public Effect {
+ public:
+  static void describe(DescribeEffect& effect);
+
+  std::vector<FitParameter> parameters(const Situation& s) const override;
+  std::vector<std::vector<double>> starts(const Situation& s) const override;
+  std::string sentence(std::span<const double> value, std::span<const double> std, const Situation& s) const override;
+  Reaction react(const double* p, const Signals& s, const double* memory, double* next) const override;
+};
+
+}  // namespace bodeflow::residual

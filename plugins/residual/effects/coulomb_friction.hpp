@@ -1,0 +1,19 @@
+#pragma once
+
+#include <bodeflow/effect.hpp>
+
+namespace bodeflow::residual {
+
+/// Dry friction: the force F against every movement, up to F at rest. Spread over the velocity that F itself changes in a
+/// step, so that it sticks.
+class CoulombFriction final : public Effect {
+ public:
+  static void describe(DescribeEffect& effect);
+
+  std::vector<FitParameter> parameters(const Situation& s) const override;
+  std::vector<std::vector<double>> starts(const Situation& s) const override;
+  std::string sentence(std::span<const double> value, std::span<const double> std, const Situation& s) const override;
+  Reaction react(const double* p, const Signals& s, const double* memory, double* next) const override;
+};
+
+}  // namespace bodeflow::residual

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <bodeflow/effect.hpp>
+
+namespace bodeflow::residual {
+
+/// A transmission to the sensor, or a sensor, with clearance: its reading follows y at a distance of up to r, and rests while
+/// y turns around within 2 r.
+class Play final : public Effect {
+ public:
+  static void describe(DescribeEffect& effect);
+
+  std::vector<FitParameter> parameters(const Situation& s) const override;
+  std::vector<std::vector<double>> starts(const Situation& s) const override;
+  std::string sentence(std::span<const double> value, std::span<const double> std, const Situation& s) const override;
+  double map(const double* p, double x, double time_s, double* memory) const override;
+};
+
+}  // namespace bodeflow::residual

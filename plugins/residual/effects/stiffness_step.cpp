@@ -1,0 +1,41 @@
+#include "effects/stiffness_step.hpp"
+
+#include "effects/instants.hpp"
+#include "effects/words.hpp"
+
+namespace bodeflow::residual {
+
+void StiffnessStep::describe(DescribeEffect& effect) {
+  effect.id("residual.stiffness_step")
+      .summary("The stiffness jumps while the record is taken")
+      .doc(
+          "From an instant on, stiffness is added. In every record at the same time since it began: wrong where it happens once.")
+      .acts(Acts::law, {"spring"})
+      .steps_per_sample(2)
+      .nonstationary();
+}
+
+std::vector<FitParameter> StiffnessStep::parameters(const Situation& s) const {
+  return {real("stiffness_step", per(s.place.reaction_unit, s.place.stored_unit), 0.1 * stiffness_of(s.place))
+              .says("by how much it jumps"),
+          instant(s)};
+}
+
+std::vector<std::vector<double>> StiffnessStep::starts(const Situation& s) const {
+  std::vector<std::vector<double>> starts;
+  for (const double at : likely_instants(s)) starts.push_back({0.0, at});
+  return starts;
+}
+
+std::string StiffnessStep::sentence(std::span<const double> value, std::span<const double> std, const Situation& s) const {
+  return "stiffness of the " + spoken(s.place.name) + " that jumps by " +
+         quantity(value[0], std[0], per(s.place.reaction_unit, s.place.stored_unit)) + " " + digits(value[1], 4) +
+         " s after the record began";
+}
+
+Reaction StiffnessStep::react(const double* p, const Signals& s, const double*, double*) const {
+  const double more = p[0] * after(p[1], s.time_s, s.step_s);
+  return {more * s.stored, 0.0, more};
+}
+
+}  // namespace bodeflow::residual

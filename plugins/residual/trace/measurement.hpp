@@ -86,7 +86,12 @@ class Measurement {
   virtual HeldOutError error(const Eigen::VectorXd& residual) const = 0;
   virtual ResidualPicture picture(const Eigen::VectorXd& residual) const = 0;
 
-  /// For starts of base models: a response of each input.
+  /// What the record itself shows, in sentences: clipping, coarse steps of a converter, a trend.
+  virtual std::vector<std::string> observations() const { return {}; }
+  /// What a residual shows beside the tests, in sentences: where it goes with the input, feedback, a drift.
+  virtual std::vector<std::string> remarks(const Eigen::VectorXd& /*residual*/) const { return {}; }
+
+  /// For starts of base models: a response of each input, the declared hold and delay taken off.
   virtual std::vector<MeasuredResponse> response() const = 0;
   /// Adds to `s` what this record says with that base model and what it leaves: signal sizes, flows and deflections at the place
   /// (its name, kind and units are set), missing response, peaks, jumps. Larger sizes win; `missing` of the last record of the

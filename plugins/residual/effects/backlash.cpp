@@ -10,8 +10,7 @@ void Backlash::describe(DescribeEffect& effect) {
       .summary("The coupling has backlash: around its middle nothing touches and no torque passes")
       .doc(
           "Within +-g the stiffness is less by k, so the torque is less by k g beyond. Nothing touches where k is the whole "
-          "stiffness: the "
-          "fit says how much it is. The damping of the coupling stays within the gap.")
+          "stiffness: the fit says how much it is. The damping of the coupling stays within the gap.")
       .reference("M. Nordin, P.-O. Gutman, Controlling mechanical systems with backlash: a survey, Automatica 38 (2002) 1633")
       .acts(Acts::law, {"coupling"})
       .steps_per_sample(4)

@@ -11,10 +11,9 @@ void BoucWen::describe(DescribeEffect& effect) {
       .summary("Hysteresis: the force depends on where the deflection came from, as in rubber, wire ropes or iron")
       .doc(
           "Beside the linear spring the force k X z, X dz/dx = 1 - |z| while it moves towards the limit and 1 + m |z| on the way "
-          "back; solved in "
-          "closed form over each step. It is Wen's law with n = 1 and m = (beta - gamma) / (beta + gamma), m >= 0 so that closed "
-          "cycles take "
-          "energy. It depends on the path, not on the velocity. Wrong for hysteresis that forgets with time (creep).")
+          "back; solved in closed form over each step. It is Wen's law with n = 1 and m = (beta - gamma) / (beta + gamma), m >= "
+          "0 so that closed cycles take energy. It depends on the path, not on the velocity. Wrong for hysteresis that forgets "
+          "with time (creep).")
       .reference("R. Bouc, Forced vibration of mechanical systems with hysteresis, 4th Conf. Nonlinear Oscillation, 1967")
       .reference("Y.-K. Wen, Method for random vibration of hysteretic systems, ASCE J. Engineering Mechanics 102 (1976) 249")
       .acts(Acts::law, {"spring", "coupling", "core"})

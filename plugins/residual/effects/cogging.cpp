@@ -11,8 +11,7 @@ void Cogging::describe(DescribeEffect& effect) {
       .summary("A force that repeats over the position, as the teeth of a machine make it")
       .doc(
           "a sin(2 pi x / P) + b cos(2 pi x / P). Where the movement covers a small part of a period it acts like a spring. The "
-          "period is "
-          "found only from near: a fit may miss it.")
+          "period is found only from near: a fit may miss it.")
       .acts(Acts::law, {"bearing"})
       .steps_per_sample(4);
 }

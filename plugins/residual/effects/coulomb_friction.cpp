@@ -10,8 +10,8 @@ void CoulombFriction::describe(DescribeEffect& effect) {
       .summary("Dry friction acts against every movement and holds at rest")
       .doc(
           "F against the velocity, up to F at rest: spread over the velocity that F changes in a step, so that it sticks and "
-          "does not "
-          "chatter. Wrong where the contact is elastic before it slides (dahl_friction) or greater at rest (stribeck_friction).")
+          "does not chatter. Wrong where the contact is elastic before it slides (dahl_friction) or greater at rest "
+          "(stribeck_friction).")
       .acts(Acts::law, {"bearing"})
       .steps_per_sample(8)
       .rough();

@@ -11,8 +11,7 @@ void DahlFriction::describe(DescribeEffect& effect) {
       .summary("Friction that gives way elastically before it slides, as bearings do in small movements")
       .doc(
           "dF/dx = k (1 - F / Fc sign(v)), solved in closed form over each step. It depends on the path, not on the velocity. "
-          "Wrong where "
-          "friction falls with the velocity (lugre_friction), and loops within loops do not close exactly.")
+          "Wrong where friction falls with the velocity (lugre_friction), and loops within loops do not close exactly.")
       .reference("P. R. Dahl, A solid friction model, Aerospace Corporation TOR-0158(3107-18)-1, 1968")
       .acts(Acts::law, {"bearing"})
       .memory(2)

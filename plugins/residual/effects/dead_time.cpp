@@ -10,8 +10,7 @@ void DeadTime::describe(DescribeEffect& effect) {
       .summary("The inverter loses voltage against the current, because both switches of a leg are off for a while")
       .doc(
           "V s(i / (w + g V)) is lost, s the identity between -1 and 1 and the sign beyond, g V the current that V itself moves "
-          "in a "
-          "step. Averaged over the PWM period. Wrong where the current changes its sign several times within a period.")
+          "in a step. Averaged over the PWM period. Wrong where the current changes its sign several times within a period.")
       .reference(
           "S.-G. Jeong, M.-H. Park, The analysis and compensation of dead-time effects in PWM inverters, IEEE Trans. Industrial "
           "Electronics 38 (1991) 108")

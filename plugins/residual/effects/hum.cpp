@@ -10,8 +10,7 @@ void Hum::describe(DescribeEffect& effect) {
       .summary("Hum of the mains: 50 or 60 Hz and its third harmonic in the output")
       .doc(
           "Amplitudes and phases are free in every record, the frequency is one. Sought where a tone between the lines is near: "
-          "hum that falls "
-          "on a line of the excitation looks like part of the response.")
+          "hum that falls on a line of the excitation looks like part of the response.")
       .acts(Acts::tone);
 }
 

@@ -10,8 +10,7 @@ void Interharmonic::describe(DescribeEffect& effect) {
       .summary("A tone in the output that neither the input nor the mains make")
       .doc(
           "Amplitude and phase are free in every record, the frequency is one. Sought where tones stand out between the lines; "
-          "near 50 and 60 Hz "
-          "a tone is called hum.")
+          "near 50 and 60 Hz a tone is called hum.")
       .acts(Acts::tone);
 }
 

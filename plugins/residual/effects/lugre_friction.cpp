@@ -12,14 +12,12 @@ void LugreFriction::describe(DescribeEffect& effect) {
       .summary("Friction of bristles that bend before they slide, and slide more easily the faster they do")
       .doc(
           "dz/dt = v - k |v| z / g(v), F = k z + d exp(-(v / w)^2) dz/dt, g(v) = Fc + S exp(-(v / w)^2); viscous friction is "
-          "left to the base "
-          "model. z is solved in closed form over a step of even velocity. The bristles' damping fades with the velocity, so "
-          "that they never "
-          "give energy. Static friction, its velocity and the damping are found only where the movement stops often.")
+          "left to the base model. z is solved in closed form over a step of even velocity. The bristles' damping fades with the "
+          "velocity, so that they never give energy. Static friction, its velocity and the damping are found only where the "
+          "movement stops often.")
       .reference(
           "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, A new model for control of systems with friction, IEEE "
-          "Trans. "
-          "Automatic Control 40 (1995) 419")
+          "Trans. Automatic Control 40 (1995) 419")
       .reference("H. Olsson et al., Friction models and friction compensation, European Journal of Control 4 (1998) 176")
       .acts(Acts::law, {"bearing"})
       .memory(2)

@@ -10,8 +10,8 @@ void Play::describe(DescribeEffect& effect) {
       .summary("There is clearance between the plant and its sensor: the reading rests while the movement turns around")
       .doc(
           "The play operator (Krasnoselskii): the reading follows y at a distance of at most r. It delays by an angle that does "
-          "not "
-          "depend on the frequency and falls with the amplitude. Wrong where the reading side is heavy and moves on by itself.")
+          "not depend on the frequency and falls with the amplitude. Wrong where the reading side is heavy and moves on by "
+          "itself.")
       .reference("M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, 1996, section 2.1")
       .acts(Acts::output)
       .memory(1)

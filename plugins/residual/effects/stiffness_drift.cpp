@@ -9,8 +9,7 @@ void StiffnessDrift::describe(DescribeEffect& effect) {
       .summary("The stiffness changes evenly while the record is taken, for instance because it grows warm")
       .doc(
           "The reaction r t x is added, t since the record began. Every record begins anew at the value of the base model: wrong "
-          "where "
-          "the change goes on from record to record.")
+          "where the change goes on from record to record.")
       .acts(Acts::law, {"spring"})
       .steps_per_sample(2)
       .nonstationary();

@@ -10,8 +10,7 @@ void Stop::describe(DescribeEffect& effect) {
       .summary("Beyond a clearance the spring touches a second one, or a stop")
       .doc(
           "Beyond +-g the force k (x -+ g) is added. Seen only above a level of the input. Wrong where the clearance differs to "
-          "both "
-          "sides, or the impact itself loses energy.")
+          "both sides, or the impact itself loses energy.")
       .acts(Acts::law, {"spring"})
       .steps_per_sample(4)
       .rough();

@@ -13,12 +13,10 @@ void StribeckFriction::describe(DescribeEffect& effect) {
       .summary("Dry friction that is greater at rest than in movement")
       .doc(
           "F + S exp(-(v / w)^2) against the velocity, spread over the velocity that it changes in a step. Wrong where the "
-          "contact is "
-          "elastic before it slides (lugre_friction).")
+          "contact is elastic before it slides (lugre_friction).")
       .reference(
           "B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools and compensation methods for "
-          "the "
-          "control of machines with friction, Automatica 30 (1994) 1083")
+          "the control of machines with friction, Automatica 30 (1994) 1083")
       .acts(Acts::law, {"bearing"})
       .steps_per_sample(8)
       .rough();

@@ -1,0 +1,34 @@
+#include "trace/remedy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "records/signals.hpp"
+
+namespace bodeflow::residual {
+
+std::optional<double> remedy_value(const RemedyKind& kind, const std::vector<NamedEffect>& named, double factor,
+                                   const std::string& place) {
+  for (const NamedEffect& effect : named) {
+    if (effect.name != kind.effect || (!place.empty() && effect.place != place)) continue;
+    const auto at = std::find(effect.parameter_names.begin(), effect.parameter_names.end(), kind.value);
+    if (at == effect.parameter_names.end()) continue;
+    const auto n = static_cast<std::size_t>(at - effect.parameter_names.begin());
+    if (n >= effect.values.size()) continue;
+    const double value = factor * effect.values[n];
+    if (!std::isfinite(value) || value == 0.0 || (kind.positive && value < 0.0)) continue;
+    return value;
+  }
+  return std::nullopt;
+}
+
+std::string remedy_words(const RemedyKind& kind, double value, const std::string& unit) {
+  const std::string amount = records::short_number(value, 4) + " " + unit;
+  const std::string effect = kind.effect;
+  if (effect == "delay") return "commands sent " + amount + " earlier";
+  if (effect == "dead_time") return "dead-time compensation of " + amount;
+  if (effect == "offset") return "an offset of " + amount + " taken off the measurement";
+  return "friction feed-forward of " + amount;
+}
+
+}  // namespace bodeflow::residual

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bodeflow::residual {
+
+/// What a drive can do against an effect that was found.
+struct RemedyKind {
+  const char* effect;     ///< "dead_time"
+  const char* value;      ///< the parameter of the effect that says how much
+  const char* parameter;  ///< live parameter of the block that remedies it
+  bool positive;          ///< a value below 0 is nothing that it can do
+};
+
+inline constexpr RemedyKind kRemedies[] = {
+    {"delay", "delay", "lead", true},
+    {"dead_time", "dead_time_voltage", "compensation_time", true},
+    {"offset", "offset", "correction", false},
+    {"coulomb_friction", "coulomb_friction", "torque", true},
+};
+
+/// An effect that was named, as far as a remedy asks.
+struct NamedEffect {
+  std::string name;  ///< without its place
+  std::string place;
+  std::vector<std::string> parameter_names;
+  std::vector<double> values;
+};
+
+/// How much the remedy has to do for what was named, `factor` times the effect's parameter; nothing where that effect was not
+/// named, stands in another place than `place` ("" for any), or is beyond what the remedy can do.
+std::optional<double> remedy_value(const RemedyKind& kind, const std::vector<NamedEffect>& named, double factor,
+                                   const std::string& place);
+
+/// "dead-time compensation of 1.02e-06 s" ...: what is switched on, as a part of a sentence.
+std::string remedy_words(const RemedyKind& kind, double value, const std::string& unit);
+
+}  // namespace bodeflow::residual

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bodeflow/effect.hpp>
 
+#include "effects/words.hpp"
+
 /// When something changed: for effects that jump once.
 namespace bodeflow::residual {
 
@@ -21,7 +23,7 @@ inline double after(double instant_s, double time_s, double step_s) {
 
 /// The parameter that such effects share.
 inline FitParameter instant(const Situation& s) {
-  return real("instant", "s", std::max(s.duration_s / 10.0, s.sample_time_s))
+  return real("instant", "s", size_or_one(s.duration_s / 10.0))
       .between(0.0, s.duration_s)
       .says("when it jumps, since the record began");
 }

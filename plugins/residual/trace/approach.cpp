@@ -1,0 +1,104 @@
+#include "trace/approach.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bodeflow::residual {
+namespace {
+
+constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9;
+constexpr int kTrials = 6;
+
+// A coordinate that says next to nothing must not be sent away by rounding: a factor of e^4 a step, or 1000 typical sizes.
+constexpr double kFarthestFactor = 4.0, kFarthestSizes = 1e3;
+
+/// A damped Gauss-Newton step, solved in columns of unit length.
+Eigen::VectorXd step_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual, double damping) {
+  const Eigen::VectorXd scale = jacobian.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  Eigen::MatrixXd normal = scale.asDiagonal() * (jacobian.transpose() * jacobian) * scale.asDiagonal();
+  normal.diagonal().array() += damping;
+  const Eigen::VectorXd gradient = scale.asDiagonal() * (jacobian.transpose() * residual);
+  return -(scale.asDiagonal() * normal.ldlt().solve(gradient));
+}
+
+Eigen::VectorXd limited(const FitProblem& problem, Eigen::VectorXd step) {
+  for (Eigen::Index i = 0; i < step.size(); ++i) {
+    const double most = problem.layout().is_logarithmic(i) ? kFarthestFactor : kFarthestSizes;
+    step[i] = std::clamp(step[i], -most, most);
+  }
+  return step;
+}
+
+void refresh(const FitProblem& problem, bool all, Approach& a) {
+  for (Eigen::Index i = 0; i < a.at.size(); ++i) {
+    if (!all && problem.is_settled(i)) continue;
+    const Eigen::VectorXd column = problem.column(i, a.at, a.residual);
+    if (column.allFinite()) a.jacobian.col(i) = column;
+  }
+}
+
+/// Makes the Jacobian explain the step that was taken.
+void update(const Eigen::VectorXd& step, const Eigen::VectorXd& change, Eigen::MatrixXd& jacobian) {
+  const Eigen::VectorXd weight = jacobian.colwise().squaredNorm().transpose().cwiseProduct(step);
+  const double length = weight.dot(step);
+  if (!(length > 0.0)) return;
+  jacobian += (change - jacobian * step) * (weight / length).transpose();
+}
+
+}  // namespace
+
+Approach approach_from(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::MatrixXd& settled_columns) {
+  Approach a;
+  a.at = start;
+  a.residual = problem.residual(start);
+  if (!a.residual.allFinite()) return a;
+  a.cost = a.residual.squaredNorm();
+  a.jacobian = Eigen::MatrixXd::Zero(problem.rows(), start.size());
+  Eigen::Index from = 0;
+  for (Eigen::Index i = 0; i < start.size() && from < settled_columns.cols(); ++i)
+    if (problem.is_settled(i)) a.jacobian.col(i) = settled_columns.col(from++);
+  refresh(problem, settled_columns.cols() == 0, a);
+  a.started = true;
+  return a;
+}
+
+double promised_cost(const Approach& a) {
+  const Eigen::VectorXd step = step_of(a.jacobian, a.residual, kLeastDamping);
+  return step.allFinite() ? (a.residual + a.jacobian * step).squaredNorm() : a.cost;
+}
+
+void approach(const FitProblem& problem, int steps, double least_fall, Approach& a) {
+  if (!a.started) return;
+  double damping = kFirstDamping;
+  bool fresh = false;
+  for (int n = 0; n < steps; ++n) {
+    double fall = 0.0;
+    bool moved = false;
+    for (int trial = 0; trial < kTrials && !moved; ++trial) {
+      const Eigen::VectorXd step = limited(problem, step_of(a.jacobian, a.residual, damping));
+      const Eigen::VectorXd next = a.at + step;
+      const Eigen::VectorXd residual = problem.residual(next);
+      const double cost = residual.allFinite() ? residual.squaredNorm() : std::numeric_limits<double>::infinity();
+      if (cost < a.cost) {
+        update(step, residual - a.residual, a.jacobian);
+        fall = a.cost - cost;
+        a.at = next;
+        a.residual = residual;
+        a.cost = cost;
+        damping = std::max(damping / 10.0, kLeastDamping);
+        moved = true;
+      } else {
+        damping = std::max(damping, 1e-4) * 10.0;
+      }
+    }
+    const bool small = fall < least_fall;
+    if (small && fresh) return;
+    fresh = small;
+    refresh(problem, small, a);
+    if (small) damping = kFirstDamping;
+  }
+}
+
+}  // namespace bodeflow::residual

@@ -1,0 +1,101 @@
+#include "trace/joint_fit.hpp"
+
+#include <algorithm>
+#include <bodeflow/numerics/levenberg_marquardt.hpp>
+#include <numeric>
+
+namespace bodeflow::residual {
+namespace {
+
+constexpr numerics::LeastSquaresLimits kLimits{40, 1e-7};
+constexpr std::size_t kStarts = 2;
+constexpr int kSteps = 12;
+
+}  // namespace
+
+Eigen::VectorXd Fit::std(std::size_t record) const {
+  const Eigen::VectorXd slopes = layout.slopes(values(record));
+  Eigen::VectorXd s(slopes.size());
+  for (Eigen::Index p = 0; p < s.size(); ++p) {
+    const Eigen::Index i = layout.index(static_cast<std::size_t>(p), record);
+    s[p] = std::abs(slopes[p]) * std::sqrt(std::max(covariance(i, i), 0.0));
+  }
+  return s;
+}
+
+Eigen::MatrixXd Fit::value_covariance() const {
+  const Eigen::VectorXd slopes = layout.slopes(values());
+  Eigen::MatrixXd c(slopes.size(), slopes.size());
+  for (Eigen::Index p = 0; p < c.rows(); ++p)
+    for (Eigen::Index q = 0; q < c.cols(); ++q)
+      c(p, q) = slopes[p] * slopes[q] *
+                covariance(layout.index(static_cast<std::size_t>(p), 0), layout.index(static_cast<std::size_t>(q), 0));
+  return c;
+}
+
+Fit fit_at(const FitProblem& problem, const Approach& a) {
+  Fit f;
+  f.model = problem.model();
+  f.layout = problem.layout();
+  f.at = a.at;
+  f.residual = a.residual;
+  f.jacobian = a.jacobian;
+  f.covariance = pseudo_inverse_normal(a.jacobian);
+  f.chi2 = a.cost;
+  const auto known = [](const auto& r) { return r->floor_known(); };
+  if (!std::all_of(problem.records().begin(), problem.records().end(), known))
+    f.covariance *= a.cost / std::max(static_cast<double>(a.residual.size() - a.at.size()), 1.0);
+  return f;
+}
+
+Expected<Fit> polish(const FitProblem& problem, const Eigen::VectorXd& coordinates) {
+  Eigen::VectorXd point, there;  // the last residual, which the Jacobian at the same point needs again
+  const auto residual = [&](const Eigen::VectorXd& c) {
+    if (point.size() == 0 || point != c) {
+      there = problem.residual(c);
+      point = c;
+    }
+    return there;
+  };
+  const numerics::LeastSquaresProblem least_squares{problem.rows(),
+                                                    [&](const Eigen::VectorXd& c, Eigen::VectorXd& r) { r = residual(c); },
+                                                    [&](const Eigen::VectorXd& c, Eigen::MatrixXd& j) {
+                                                      const Eigen::VectorXd here = residual(c);
+                                                      j = problem.jacobian(c, here);
+                                                    }};
+  const auto found = numerics::levenberg_marquardt(least_squares, coordinates, kLimits);
+  if (!found) return tl::unexpected(found.error());
+  Approach end{found->parameters, found->residual, found->jacobian, found->cost, true};
+  if (!end.jacobian.allFinite() || !end.residual.allFinite()) return refused("the search ended at the border of the domain");
+  Fit f = fit_at(problem, end);
+  f.converged = found->converged;
+  f.polished = true;
+  return f;
+}
+
+Expected<Fit> fit(const JointModel& model, const Measurements& records, const std::vector<Eigen::VectorXd>& starts) {
+  FitProblem problem(model, records);
+  std::vector<Eigen::VectorXd> points;
+  std::vector<double> costs;
+  for (const Eigen::VectorXd& start : starts) {
+    points.push_back(problem.layout().of(start));
+    const double cost = problem.residual(points.back()).squaredNorm();
+    costs.push_back(std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity());
+  }
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+  Approach best;
+  for (std::size_t n = 0; n < std::min(order.size(), kStarts); ++n) {
+    if (!std::isfinite(costs[order[n]])) break;
+    problem.bound_base(points[order[n]]);
+    Approach a = approach_from(problem, points[order[n]], Eigen::MatrixXd());
+    if (order.size() > 1) approach(problem, kSteps, 1e-4 * a.cost, a);
+    if (a.started && (!best.started || a.cost < best.cost)) best = std::move(a);
+  }
+  if (!best.started) return refused("the model can't be computed at any of the parameters to start from");
+  problem.bound_base(points[order.front()]);
+  return polish(problem, best.at);
+}
+
+}  // namespace bodeflow::residual

@@ -1,0 +1,249 @@
+#include "trace/null_distribution.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <bodeflow/numerics/chi_squared.hpp>
+#include <bodeflow/numerics/random.hpp>
+#include <cmath>
+
+namespace bodeflow::residual {
+namespace {
+
+// A parameter is one at which the effect vanishes if this part of it leaves less than kGone of the effect.
+constexpr double kNearZero = 1e-5;
+constexpr double kGone = 1e-2;
+constexpr std::size_t kDraws = 2000, kGrid = 24;
+constexpr double kTail = 0.02;
+// Of the amplitude at which the Jacobian of an effect is taken: near 0, yet above rounding.
+constexpr double kSmall = 1e-3;
+constexpr double kPi = 3.14159265358979323846;
+
+/// The effect beside the settled fit, by its own parameters.
+class Beside {
+ public:
+  Beside(const FitProblem& problem, const Fit& from) : problem_(problem), from_(from) {
+    at_.resize(problem.layout().size());
+    Eigen::Index settled = 0;
+    for (Eigen::Index i = 0; i < at_.size(); ++i) at_[i] = problem.is_settled(i) ? from.at[settled++] : 0.0;
+    first_ = problem.layout().parameters().size() - problem.model().additions.back().parameters.size();
+  }
+
+  /// What the effect changes in the residual.
+  Eigen::VectorXd change(const Eigen::VectorXd& own) const {
+    Eigen::VectorXd c = at_;
+    const Coordinates& layout = problem_.layout();
+    for (std::size_t p = first_; p < layout.parameters().size(); ++p) {
+      const FitParameter& parameter = layout.parameters()[p];
+      const double v = own[static_cast<Eigen::Index>(p - first_)];
+      for (std::size_t r = 0; r < layout.records(); ++r)
+        c[layout.index(p, r)] = parameter.logarithmic ? std::log(v) : v / parameter.scale;
+    }
+    return problem_.residual(c) - from_.residual;
+  }
+
+ private:
+  const FitProblem& problem_;
+  const Fit& from_;
+  Eigen::VectorXd at_;
+  std::size_t first_ = 0;
+};
+
+/// The effect with some size: what starts at 0 is of its typical one.
+Eigen::VectorXd sized(const std::vector<FitParameter>& own, Eigen::VectorXd start) {
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    const FitParameter& p = own[static_cast<std::size_t>(i)];
+    if (start[i] == 0.0) start[i] = p.scale > p.high ? -p.scale : p.scale;
+  }
+  return start;
+}
+
+/// The parameters that make the effect vanish: each alone, or all of these together.
+std::vector<Eigen::Index> vanishing(const Beside& beside, const std::vector<FitParameter>& own, const Eigen::VectorXd& start) {
+  const double whole = beside.change(start).norm();
+  std::vector<Eigen::Index> found;
+  if (!(whole > 0.0)) return found;
+  const auto gone = [&](const Eigen::VectorXd& v) { return beside.change(v).norm() < kGone * whole; };
+  Eigen::VectorXd none = start;
+  std::vector<Eigen::Index> candidates;
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    const FitParameter& p = own[static_cast<std::size_t>(i)];
+    if (p.low > 0.0 || p.high < 0.0) continue;
+    Eigen::VectorXd without = start;
+    without[i] *= kNearZero;
+    if (gone(without)) found.push_back(i);
+    none[i] *= kNearZero;
+    candidates.push_back(i);
+  }
+  if (!found.empty() || candidates.empty() || !gone(none)) return found;
+  for (const Eigen::Index i : candidates) {  // those without which the others do nothing either
+    Eigen::VectorXd without = none;
+    without[i] = start[i];
+    if (!gone(without)) found.push_back(i);
+  }
+  return found;
+}
+
+/// Values that a parameter may have where the effect vanishes: its start, and around it.
+std::vector<double> spread(const FitParameter& p, double start) {
+  std::vector<double> values;
+  const bool bounded = std::isfinite(p.low) && std::isfinite(p.high);
+  if (!p.logarithmic && bounded) {
+    for (int n = 0; n < 9; ++n) values.push_back(p.low + (p.high - p.low) * (0.5 + n) / 9.0);
+    return values;
+  }
+  for (const double factor : {1.0 / 8.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
+    const double v = start * factor;
+    if (v >= p.low && v <= p.high) values.push_back(v);
+  }
+  if (values.empty()) values.push_back(start);
+  return values;
+}
+
+/// Points of the parameters that say nothing where the effect vanishes: starts, then all combinations, or a seeded choice.
+std::vector<Eigen::VectorXd> grid(const std::vector<FitParameter>& own, const std::vector<Eigen::Index>& amplitudes,
+                                  const std::vector<Eigen::VectorXd>& starts) {
+  std::vector<Eigen::VectorXd> points(starts.begin(),
+                                      starts.begin() + static_cast<std::ptrdiff_t>(std::min(starts.size(), kGrid / 2)));
+  std::vector<std::pair<Eigen::Index, std::vector<double>>> free;
+  std::size_t combinations = 1;
+  for (Eigen::Index i = 0; i < starts.front().size(); ++i) {
+    if (std::find(amplitudes.begin(), amplitudes.end(), i) != amplitudes.end()) continue;
+    free.emplace_back(i, spread(own[static_cast<std::size_t>(i)], starts.front()[i]));
+    combinations *= free.back().second.size();
+  }
+  if (free.empty()) return {starts.front()};
+  numerics::Random random(1);
+  const bool all = combinations + points.size() <= kGrid;
+  for (std::size_t n = 0; all ? n < combinations : points.size() < kGrid; ++n) {
+    Eigen::VectorXd point = starts.front();
+    std::size_t rest = n;
+    for (const auto& [i, values] : free) {
+      const std::size_t pick =
+          all ? rest % values.size() : static_cast<std::size_t>(random.uniform() * static_cast<double>(values.size()));
+      point[i] = values[std::min(pick, values.size() - 1)];
+      rest /= values.size();
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
+/// Unit vectors of what the effect can do near 0 at each point, at right angles to what the model without it can do: `per_point`
+/// columns a point.
+Eigen::MatrixXd directions(const Beside& beside, const Fit& from, const std::vector<Eigen::Index>& amplitudes,
+                           const std::vector<Eigen::VectorXd>& points) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(from.jacobian);
+  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(from.jacobian.rows(), from.jacobian.cols());
+  const auto per_point = static_cast<Eigen::Index>(amplitudes.size());
+  Eigen::MatrixXd all(from.jacobian.rows(), per_point * static_cast<Eigen::Index>(points.size()));
+  Eigen::Index used = 0;
+  for (Eigen::VectorXd point : points) {
+    for (const Eigen::Index i : amplitudes) point[i] *= kSmall;
+    const Eigen::Index begin = used;
+    bool sound = true;
+    for (std::size_t a = 0; a < amplitudes.size() && sound; ++a) {
+      Eigen::VectorXd single = point;
+      for (const Eigen::Index other : amplitudes)
+        if (other != amplitudes[a]) single[other] *= kNearZero;
+      Eigen::VectorXd d = beside.change(single);
+      sound = d.allFinite() && d.norm() > 0.0;
+      if (!sound) break;
+      d.normalize();
+      d -= q * (q.transpose() * d);
+      d -= all.middleCols(begin, used - begin) * (all.middleCols(begin, used - begin).transpose() * d);
+      sound = d.norm() > 1e-4;  // else the model without the effect can do the same
+      if (sound) all.col(used++) = d.normalized();
+    }
+    if (!sound) used = begin;
+  }
+  return all.leftCols(used);
+}
+
+/// The largest gain over the points, for each of some draws of the noise.
+std::vector<double> largest_gains(const Eigen::MatrixXd& unit, Eigen::Index per_point, bool one_sided) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(unit.transpose() * unit);
+  const Eigen::MatrixXd root = gram.eigenvectors() * gram.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  numerics::Random random(2);
+  Eigen::VectorXd draw(unit.cols());
+  std::vector<double> gains;
+  for (std::size_t n = 0; n < kDraws; ++n) {
+    for (double& d : draw) d = random.normal();
+    const Eigen::VectorXd score = root * draw;
+    double largest = 0.0;
+    for (Eigen::Index g = 0; g < unit.cols(); g += per_point) {
+      const double gain = one_sided && score[g] < 0.0 ? 0.0 : score.segment(g, per_point).squaredNorm();
+      largest = std::max(largest, gain);
+    }
+    gains.push_back(largest);
+  }
+  std::sort(gains.begin(), gains.end());
+  return gains;
+}
+
+double single(const Null& n, double gain) { return (n.one_sided ? 0.5 : 1.0) * numerics::chi_squared_tail(gain, n.freedom); }
+
+double with_trials(double p, double trials) { return p < 1.0 ? -std::expm1(trials * std::log1p(-p)) : 1.0; }
+
+Null of_tones(const FitProblem& problem, const Fit& from, const Eigen::VectorXd& start) {
+  const Addition& tone = problem.model().additions.back();
+  Null n;
+  n.freedom = 0.0;
+  Eigen::VectorXd values(from.values().size() + start.size());
+  values << from.values(), start;
+  for (const auto& r : problem.records()) n.freedom += static_cast<double>(r->eliminated(problem.model(), values));
+  double bins = static_cast<double>(problem.rows()) / (2.0 * static_cast<double>(problem.records().size()));
+  for (const FitParameter& p : tone.parameters)
+    if (p.unit == "Hz" && std::isfinite(p.high))
+      bins = std::min(bins, (p.high - std::max(p.low, 0.0)) * tone.situation.duration_s);
+  n.trials = std::max(bins, 1.0);
+  n.tone = true;
+  return n;
+}
+
+}  // namespace
+
+double Null::p(double gain) const {
+  if (!(gain > 0.0)) return 1.0;
+  if (!simulated.empty() && gain < simulated[static_cast<std::size_t>((1.0 - kTail) * static_cast<double>(simulated.size()))]) {
+    const auto above = simulated.end() - std::lower_bound(simulated.begin(), simulated.end(), gain);
+    return (static_cast<double>(above) + 1.0) / (static_cast<double>(simulated.size()) + 1.0);
+  }
+  const double between_bins = tone ? std::max(std::sqrt(kPi * gain / 6.0), 1.0) : 1.0;
+  return with_trials(single(*this, gain), trials * between_bins);
+}
+
+Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& own_starts) {
+  const Addition& effect = problem.model().additions.back();
+  if (effect.what.acts == Acts::tone) return of_tones(problem, from, own_starts.front());
+  std::vector<Eigen::VectorXd> starts;
+  for (const Eigen::VectorXd& start : own_starts) starts.push_back(sized(effect.parameters, start));
+  const Beside beside(problem, from);
+  const std::vector<Eigen::Index> amplitudes = vanishing(beside, effect.parameters, starts.front());
+  Null n;
+  n.freedom = 0.0;
+  for (const Eigen::Index i : amplitudes) {
+    const FitParameter& p = effect.parameters[static_cast<std::size_t>(i)];
+    n.freedom += p.each_record ? static_cast<double>(problem.records().size()) : 1.0;
+    n.one_sided = n.one_sided || (!p.each_record && (p.low == 0.0 || p.high == 0.0));
+  }
+  if (amplitudes.empty()) {
+    n.freedom = static_cast<double>(problem.layout().size() - from.at.size());
+    return n;
+  }
+  const std::vector<Eigen::VectorXd> points = grid(effect.parameters, amplitudes, starts);
+  const bool own = std::any_of(amplitudes.begin(), amplitudes.end(),
+                               [&](Eigen::Index i) { return effect.parameters[static_cast<std::size_t>(i)].each_record; });
+  if (points.size() < 2 || own) {
+    n.trials = static_cast<double>(points.size());
+    return n;
+  }
+  const auto per_point = static_cast<Eigen::Index>(amplitudes.size());
+  const Eigen::MatrixXd unit = directions(beside, from, amplitudes, points);
+  if (unit.cols() == 0) return n;
+  n.simulated = largest_gains(unit, per_point, n.one_sided && per_point == 1);
+  const double limit = n.simulated[static_cast<std::size_t>((1.0 - kTail) * static_cast<double>(kDraws))];
+  n.trials = std::max(std::log1p(-kTail) / std::log1p(-std::min(single(n, limit), 0.999)), 1.0);
+  return n;
+}
+
+}  // namespace bodeflow::residual

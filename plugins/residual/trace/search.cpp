@@ -1,0 +1,225 @@
+#include "trace/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "records/signals.hpp"
+
+namespace bodeflow::residual {
+namespace {
+
+// A candidate that gains less than this part of what the best one does is no rival: it is not fitted to the end.
+constexpr double kRival = 0.5;
+constexpr std::size_t kMostSettled = 10;
+// One that chance would do once in so many times its level may be a finding once it is fitted to the end.
+constexpr double kNearLevel = 100.0;
+
+class Searcher {
+ public:
+  Searcher(const std::vector<Eigen::VectorXd>& base_starts, const Catalogue& catalogue, const Bench& bench,
+           const SearchSettings& settings)
+      : base_starts_(base_starts), catalogue_(catalogue), bench_(bench), settings_(settings) {
+    floor_known_ = bench.select->floor_known();
+    out_.levels.alpha = settings.alpha;
+    out_.levels.share = settings.share;
+    out_.levels.candidates = 0;
+  }
+
+  Expected<Searched> run(const JointModel& base) {
+    auto fitted = fit(base, bench_.fit, base_starts_);
+    if (!fitted) return refused("the base model could not be fitted: " + fitted.error().text);
+    auto examined = examine(std::move(*fitted), bench_);
+    if (!examined) return tl::unexpected(examined.error());
+    out_.base = std::move(*examined);
+    test_classes(bench_, out_.base);
+    out_.levels.class_tests = out_.base.test_count();
+    out_.best = out_.base;
+    while (out_.found.size() < settings_.most_effects && take_step()) {
+    }
+    if (!out_.found.empty()) find_equivalents();
+    return std::move(out_);
+  }
+
+ private:
+  std::vector<Eigen::VectorXd> values_of(const Fit& f) const {
+    std::vector<Eigen::VectorXd> all;
+    for (std::size_t r = 0; r < bench_.fit.size(); ++r) all.push_back(f.values(r));
+    return all;
+  }
+
+  /// All that can be tried beside a model, best first, the promising ones fitted to the end.
+  Step try_all(const Examined& before, bool first, bool priced) {
+    Step step;
+    const Against against{bench_, before, out_.base.select.residual, base_starts_};
+    for (Bound& b : bind_all(catalogue_, before.fit.model, values_of(before.fit), bench_.fit)) {
+      if (!b.refusal.empty()) {
+        if (out_.steps.empty()) out_.refused.push_back(std::move(b));
+        continue;
+      }
+      if (settings_.progress) settings_.progress("tries " + b.addition.label);
+      step.candidates.push_back(try_effect(b.addition, against));
+    }
+    if (priced) out_.levels.candidates += step.candidates.size();
+    step.levels = out_.levels;
+    settle_rivals(against, step);
+    for (Candidate& c : step.candidates) judge(step.levels, first, floor_known_, c);
+    rank(step.candidates);
+    judge_leaders(step);
+    return step;
+  }
+
+  static void rank(std::vector<Candidate>& candidates) {
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+      if (a.accepted != b.accepted) return a.accepted;
+      if (a.tried != b.tried) return a.tried;
+      return a.merit() > b.merit();
+    });
+  }
+
+  void settle_rivals(const Against& against, Step& step) const {
+    auto& all = step.candidates;
+    for (std::size_t n = 0; n < kMostSettled; ++n) {
+      double best = 0.0;
+      for (const Candidate& c : all)
+        if (c.tried) best = std::max(best, c.merit());
+      Candidate* next = nullptr;
+      for (Candidate& c : all) {
+        if (!c.tried || c.with.fit.polished || c.p > kNearLevel * step.levels.p_candidate() || c.merit() < kRival * best)
+          continue;
+        if (next == nullptr || c.merit() > next->merit()) next = &c;
+      }
+      if (next == nullptr) return;
+      settle(against, *next);
+    }
+  }
+
+  /// Class tests for the best and for those that are no further from it than chance.
+  void judge_leaders(Step& step) const {
+    auto& all = step.candidates;
+    const auto leader = std::find_if(all.begin(), all.end(), [](const Candidate& c) { return c.accepted; });
+    if (leader == all.end()) return;
+    for (auto c = leader; c != all.end() && c->accepted; ++c) {
+      if (!c->with.fit.polished) {
+        c->reason = "explains less than " + leader->label;
+        continue;
+      }
+      const double z = c == leader ? 0.0 : distinction(bench_, *leader, *c);
+      if (z < step.levels.z_candidate()) {
+        judge_rest(step.levels, bench_, *c);
+      } else {
+        c->reason = "explains less than " + leader->label + ": " + records::short_number(z, 2) + " standard deviations apart";
+      }
+    }
+    std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.explains && !b.explains; });
+  }
+
+  /// Adds the best candidate; false where the search is over.
+  bool take_step() {
+    Step step = try_all(out_.best, out_.found.empty(), true);
+    const bool some = !step.candidates.empty() && step.candidates.front().accepted;
+    if (some) {
+      Candidate& best = step.candidates.front();
+      step.taken = 0;
+      best.reason = "added";
+      out_.best = best.with;
+      out_.share = best.share;
+      out_.found.push_back({best.addition, best.added_share, {}, {}});
+      out_.explains = best.explains && (floor_known_ || best.with.smallest_p() > step.levels.p_class());
+    }
+    out_.steps.push_back(std::move(step));
+    if (some && out_.found.size() > 1) drop_needless();
+    return some && !out_.explains;
+  }
+
+  /// The model without the effect at `position`, fitted.
+  std::optional<Examined> without(std::size_t position) const {
+    JointModel model = out_.best.fit.model;
+    const Eigen::VectorXd all = out_.best.fit.values();
+    const Eigen::Index begin = model.begin_of(position);
+    const auto count = static_cast<Eigen::Index>(model.additions[position].parameters.size());
+    Eigen::VectorXd start(all.size() - count);
+    start << all.head(begin), all.tail(all.size() - begin - count);
+    model.additions.erase(model.additions.begin() + static_cast<std::ptrdiff_t>(position));
+    auto fitted = fit(model, bench_.fit, {start});
+    if (!fitted) return {};
+    auto examined = examine(std::move(*fitted), bench_);
+    if (!examined) return {};
+    return std::move(*examined);
+  }
+
+  /// Drops effects whose absence costs nothing on the selecting record.
+  void drop_needless() {
+    for (std::size_t n = 0; n + 1 < out_.found.size();) {
+      auto rest = without(n);
+      if (!rest) return;
+      const Gain g = bench_.select->gain(rest->select.residual, out_.best.select.residual);
+      const double fitted = static_cast<double>(out_.best.select.fitted - rest->select.fitted);
+      if (held_out_p(g.likelihood, fitted) < out_.levels.p_candidate()) {
+        ++n;
+        continue;
+      }
+      out_.dropped.push_back(out_.found[n].addition.label);
+      out_.found.erase(out_.found.begin() + static_cast<std::ptrdiff_t>(n));
+      out_.best = std::move(*rest);
+      test_classes(bench_, out_.best);
+      const Gain whole = bench_.select->gain(out_.base.select.residual, out_.best.select.residual);
+      out_.share = whole.excess_before > 0.0 ? std::clamp(1.0 - whole.excess_after / whole.excess_before, 0.0, 1.0) : 0.0;
+      out_.explains = out_.best.smallest_p() > out_.levels.p_class() || (floor_known_ && out_.share > out_.levels.share);
+    }
+  }
+
+  /// The final model as a candidate whose last effect is that at `position`.
+  Candidate final_candidate(double price) const {
+    Candidate c;
+    c.with = out_.best;
+    c.price = price;
+    return c;
+  }
+
+  void find_equivalents() {
+    const bool one = out_.found.size() == 1;
+    for (std::size_t n = 0; n < out_.found.size(); ++n) {
+      if (one && out_.dropped.empty()) {
+        compare(n, out_.steps.front());
+      } else if (auto rest = without(n)) {
+        test_classes(bench_, *rest);
+        Step step = try_all(*rest, false, false);
+        compare(n, step);
+      }
+    }
+  }
+
+  /// Notes what explains as well as the effect at that position.
+  void compare(std::size_t position, Step& step) {
+    Found& f = out_.found[position];
+    const auto own = std::find_if(step.candidates.begin(), step.candidates.end(),
+                                  [&](const Candidate& c) { return c.label == f.addition.label; });
+    if (own == step.candidates.end()) return;
+    const Candidate best = final_candidate(own->price);
+    for (Candidate& c : step.candidates) {
+      if (c.label == f.addition.label || !c.accepted || !c.with.fit.polished || (out_.explains && !c.explains)) continue;
+      const double z = distinction(bench_, best, c);
+      const bool apart = z > step.levels.z_candidate();
+      c.reason = (apart ? "explains less than " : "explains it as well as ") + f.addition.label + (apart ? ": " : " does: ") +
+                 records::short_number(z, 2) + " standard deviations apart";
+      if (!apart) f.equivalents.push_back(c.label);
+    }
+    if (!f.equivalents.empty()) f.separation = "measure at one more level, and over a wider band";
+  }
+
+  const std::vector<Eigen::VectorXd>& base_starts_;
+  const Catalogue& catalogue_;
+  const Bench& bench_;
+  const SearchSettings& settings_;
+  bool floor_known_ = true;
+  Searched out_;
+};
+
+}  // namespace
+
+Expected<Searched> search(const JointModel& base, const std::vector<Eigen::VectorXd>& base_starts, const Catalogue& catalogue,
+                          const Bench& bench, const SearchSettings& settings) {
+  return Searcher(base_starts, catalogue, bench, settings).run(base);
+}
+
+}  // namespace bodeflow::residual

@@ -11,16 +11,18 @@ namespace bodeflow::residual {
 struct Drive {
   /// Rows: samples x values_per_sample, in time; columns: inputs of the plant. The maps of Acts::input are applied already.
   Eigen::MatrixXd input;
-  int values_per_sample = 1;  ///< more than one: the input between the samples, each held
-  Hold hold = Hold::zero_order;
+  int values_per_sample = 1;     ///< more than one: the input between the samples
+  Hold hold = Hold::zero_order;  ///< of the values of `input`; band_limited counts as first_order, see `refined`
   double sample_time_s = 0.0;
   double delay_s = 0.0;  ///< all of it, declared and added
+  double start_s = 0.0;  ///< of the first sample, since the record began: for laws that depend on the time
   /// The input repeats: simulated until it is steady, then for `periods` of it; else once, from `initial` at the first sample.
   bool periodic = false;
   Eigen::Index periods = 1;  ///< more than one for effects that depend on the time since the record began
   Eigen::VectorXd initial;   ///< state; empty: the linear steady state where periodic, else zeros
-  /// What immittances take at each place besides, one row a value of `input`; empty: nothing.
+  /// What immittances take at each place besides, one row a value of `input`, straight between them; empty: nothing.
   Eigen::MatrixXd extra_reaction;
+  bool signals = true;  ///< flows and stored quantities are wanted
 };
 
 /// What a simulation gives, at the samples: row n is what is sampled with input sample n.
@@ -30,15 +32,22 @@ struct Simulated {
   Eigen::VectorXd state;         ///< at the end
 };
 
-/// The plant with its laws, stepped through the input. Values that are not finite: outside of the domain.
+/// The plant with its laws, stepped through the input. Values that are not finite: outside of the domain. Series, parallel, tone
+/// effects, immittances and maps of the output are none of its business.
 ///
-/// Method: between two steps of h the linear part is moved exactly (matrix exponential, input held or straight), reactions are
-/// taken straight from step to step, r(t) = r0 + (r1 - r0) t / h, and r1 solved from the law at the end of the step: the
-/// trapezoidal rule for the laws alone, of second order and without a limit of stability; laws that jump are weighted (1 -
-/// theta), theta = 0.6, which damps what the trapezoidal rule leaves ringing. The step in which a sample is taken late (delay) is
-/// split there. Laws of several places are solved in turn until they agree.
+/// Method: between two steps the linear part is moved exactly (matrix exponential, input held or straight), reactions of laws are
+/// polynomials of time: see Stepper. Smooth laws are solved with order 4; around jumps and corners, and for laws with a memory,
+/// single steps of order 2 weighted by theta = 0.6 take over. A sample that is taken between steps (delay) is computed from these
+/// polynomials. `time_s` of laws is 0 before the record begins.
+/// A periodic drive is run from the linear steady state until a period ends where it began, within 1e-9 of the states; a plant
+/// that integrates may drift, which is taken off the output as a straight line.
+/// Errors: sizes that do not fit, a model without state space.
 Expected<Simulated> simulate(const JointModel& model, const Eigen::VectorXd& values, std::span<const double> known,
                              const Drive& drive);
+
+/// A periodic input, one row a sample, as `values_per_sample` values for each: straight lines between them have the spectrum of
+/// the input up to the Nyquist frequency (its own line left out).
+Eigen::MatrixXd refined(const Eigen::MatrixXd& input, int values_per_sample);
 
 /// (1 + places) x (inputs + places) at s: what LinearPlant or BaseModel::response says, without effects.
 Eigen::MatrixXcd plant_response(const BaseModel& base, const Eigen::VectorXd& values, std::span<const double> known,

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// What a description depends on beside the file: the last number counts the changes of its JSON form.
-std::string host_version() { return fmt::format("{} abi {}.{} form 1", BODEFLOW_VERSION, BF_ABI_MAJOR, BF_ABI_MINOR); }
+std::string host_version() { return fmt::format("{} abi {}.{} form 2", BODEFLOW_VERSION, BF_ABI_MAJOR, BF_ABI_MINOR); }
 
 template <class T>
 bool has_number(const Json& entry, const char* name, T value) {

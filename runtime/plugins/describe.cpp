@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -126,10 +127,11 @@ ParameterDescription parameter(const bf_parameter_descriptor* c) {
   return p;
 }
 
-BlockDescription block(const bf_block_descriptor& c) {
-  require_size(c, "a block's descriptor");
+/// `kind` is "block" or "base model".
+BlockDescription block(const bf_block_descriptor& c, const std::string& kind) {
+  require_size(c, ("a " + kind + "'s descriptor").c_str());
   BlockDescription block;
-  block.id = required_text(c.id, "a block's id");
+  block.id = required_text(c.id, "a " + kind + "'s id");
   block.summary = optional_text(c.summary);
   block.doc = optional_text(c.doc);
   block.references = optional_text(c.references);
@@ -152,21 +154,61 @@ BlockDescription block(const bf_block_descriptor& c) {
     }
     for (std::uint32_t i = 0; i < c.parameter_count; ++i) block.parameters.push_back(parameter(c.parameters[i]));
   } catch (const Broken& broken) {
-    throw Broken("block '" + block.id + "': " + broken.what());
+    throw Broken(kind + " '" + block.id + "': " + broken.what());
   }
   return block;
 }
 
-}  // namespace
+EffectDescription effect(const bf_effect_descriptor& c) {
+  require_size(c, "an effect's descriptor");
+  EffectDescription effect;
+  effect.id = required_text(c.id, "an effect's id");
+  const std::string of = " of effect '" + effect.id + "'";
+  if (c.acts < BF_ACTS_LAW || c.acts > BF_ACTS_TONE)
+    throw Broken(fmt::format("effect '{}': unknown way to act {}", effect.id, c.acts));
+  effect.acts = static_cast<Acts>(c.acts - BF_ACTS_LAW);
+  effect.summary = optional_text(c.summary);
+  effect.doc = optional_text(c.doc);
+  effect.references = optional_text(c.references);
+  effect.separation = optional_text(c.separation);
+  if (c.kind_count > kMostChoices || c.equivalent_count > kMostChoices) {
+    throw Broken(fmt::format("effect '{}': {} kinds of places and {} equivalents, at most {} expected", effect.id, c.kind_count,
+                             c.equivalent_count, kMostChoices));
+  }
+  effect.kinds = texts(c.kinds, c.kind_count, "the kinds of places" + of);
+  effect.equivalents = texts(c.equivalents, c.equivalent_count, "the equivalents" + of);
+  effect.memory = static_cast<std::size_t>(c.memory);
+  effect.steps_per_sample = static_cast<int>(std::min<std::uint32_t>(c.steps_per_sample, INT32_MAX));
+  effect.rough = (c.flags & BF_EFFECT_ROUGH) != 0;
+  effect.nonstationary = (c.flags & BF_EFFECT_NONSTATIONARY) != 0;
+  effect.memoryless_linear = (c.flags & BF_EFFECT_MEMORYLESS_LINEAR) != 0;
+  return effect;
+}
 
-tl::expected<BlockDescription, std::string> describe(const bf_block_descriptor& descriptor) {
+/// What `read` gives if `check` finds nothing wrong with it.
+template <class Read, class Check>
+auto checked(Read&& read, Check&& check) -> tl::expected<decltype(read()), std::string> {
   try {
-    BlockDescription description = block(descriptor);
+    auto description = read();
     if (std::string why = check(description); !why.empty()) return tl::unexpected(std::move(why));
     return description;
   } catch (const Broken& broken) {
     return tl::unexpected(std::string(broken.what()));
   }
+}
+
+}  // namespace
+
+tl::expected<BlockDescription, std::string> describe(const bf_block_descriptor& descriptor) {
+  return checked([&] { return block(descriptor, "block"); }, [](const BlockDescription& d) { return check(d); });
+}
+
+tl::expected<BlockDescription, std::string> describe_base_model(const bf_block_descriptor& descriptor) {
+  return checked([&] { return block(descriptor, "base model"); }, check_base_model);
+}
+
+tl::expected<EffectDescription, std::string> describe(const bf_effect_descriptor& descriptor) {
+  return checked([&] { return effect(descriptor); }, [](const EffectDescription& d) { return check(d); });
 }
 
 }  // namespace bodeflow

@@ -2,6 +2,7 @@
 
 #include <bodeflow/abi.h>
 
+#include <bodeflow/effect_description.hpp>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -68,7 +69,8 @@ struct ParameterDescription {
   bool operator==(const ParameterDescription&) const = default;
 };
 
-/// What a block's static descriptor says, owned: it outlives the plugin and comes from the probe's cache.
+/// What a block's static descriptor says, owned: it outlives the plugin and comes from the probe's cache. A base model's too:
+/// then without ports, flags, roles and cost.
 struct BlockDescription {
   std::string id;
   std::string summary;
@@ -103,6 +105,8 @@ struct PluginDescription {
   std::string sha256;  ///< of the file; empty for a file that is refused before it was hashed
   std::vector<BlockDescription> blocks;
   std::string refused;  ///< why it can't be used; empty: it can
+  std::vector<EffectDescription> effects;
+  std::vector<BlockDescription> base_models;
 };
 
 }  // namespace bodeflow

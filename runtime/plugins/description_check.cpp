@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bodeflow/error.hpp>
 #include <bodeflow/utf8.hpp>
 #include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <set>
 #include <string_view>
+
+#include "plugins/part_descriptors.hpp"
 
 namespace bodeflow {
 namespace {
@@ -110,13 +113,12 @@ std::string check_parameter(const ParameterDescription& p) {
   return {};
 }
 
-}  // namespace
-
-std::string check(const BlockDescription& block) {
+/// `kind` is "block" or "base model".
+std::string check(const BlockDescription& block, const char* kind) {
   if (!is_dotted(block.id) || block.id.find('.') == std::string::npos) {
-    return fmt::format("a block's id is {}; allowed: family.name of letters, digits, _", shown(block.id));
+    return fmt::format("a {}'s id is {}; allowed: family.name of letters, digits, _", kind, shown(block.id));
   }
-  const auto bad = [&](const std::string& what) { return fmt::format("block '{}': {}", block.id, what); };
+  const auto bad = [&](const std::string& what) { return fmt::format("{} '{}': {}", kind, block.id, what); };
   if (!all_text({&block.summary, &block.doc, &block.references}) || !all_text(block.roles)) return bad("a text is not UTF-8");
   if (!std::isfinite(block.cost_ns) || block.cost_ns < 0.0) return bad(fmt::format("the cost of {} ns", block.cost_ns));
   std::set<std::pair<std::uint32_t, std::string>> ports;
@@ -133,6 +135,33 @@ std::string check(const BlockDescription& block) {
     for (const std::string& alias : parameter.aliases) {
       if (!names.insert(alias).second) return bad(fmt::format("two parameters are named '{}'", alias));
     }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string check(const BlockDescription& block) { return check(block, "block"); }
+
+std::string check_base_model(const BlockDescription& model) {
+  if (std::string why = check(model, "base model"); !why.empty()) return why;
+  if (!model.ports.empty()) return fmt::format("base model '{}': has ports", model.id);
+  try {
+    PartDescriptors().add_base_model(model);
+  } catch (const Failure& failure) {
+    return failure.what();
+  }
+  return {};
+}
+
+std::string check(const EffectDescription& effect) {
+  const bool texts = all_text({&effect.id, &effect.summary, &effect.doc, &effect.references, &effect.separation}) &&
+                     all_text(effect.kinds) && all_text(effect.equivalents);
+  if (!texts) return fmt::format("effect {}: a text is not UTF-8", shown(effect.id));
+  try {
+    PartDescriptors().add(effect);
+  } catch (const Failure& failure) {
+    return failure.what();
   }
   return {};
 }

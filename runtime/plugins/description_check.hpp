@@ -14,5 +14,7 @@ inline constexpr std::uint64_t kMostValues = 1U << 20U;
 
 /// What is wrong with a description, wherever it came from, or "": ids and names, kinds, types, ranges, defaults, repeats.
 std::string check(const BlockDescription& block);
+std::string check_base_model(const BlockDescription& model);
+std::string check(const EffectDescription& effect);
 
 }  // namespace bodeflow

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <bodeflow/effect_type.hpp>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -293,6 +294,65 @@ BlockDescription block_from_json(const Json& json) {
   return block;
 }
 
+Acts acts_from_json(const std::string& name) {
+  for (const Acts acts :
+       {Acts::law, Acts::immittance, Acts::input, Acts::output, Acts::series, Acts::parallel, Acts::delay, Acts::tone}) {
+    if (name == acts_name(acts)) return acts;
+  }
+  throw Broken(fmt::format("unknown way to act '{}'", name));
+}
+
+/// A whole number of at least 0 and at most `most`; `absent` where there is none.
+std::int64_t count(const Json& json, const char* name, std::int64_t most, std::int64_t absent) {
+  const Json* found = member(json, name);
+  if (found == nullptr) return absent;
+  const std::int64_t value = integer_from_json(*found);
+  if (value < 0 || value > most) throw Broken(fmt::format("{}: found {}, allowed: 0 to {}", name, value, most));
+  return value;
+}
+
+EffectDescription read_effect(const Json& json) {
+  if (!json.is_object()) throw Broken("an effect is an object");
+  EffectDescription effect;
+  effect.id = text(json, "id");
+  effect.summary = text(json, "summary");
+  effect.doc = text(json, "doc");
+  effect.references = text(json, "references");
+  effect.acts = acts_from_json(text(json, "acts"));
+  if (const Json* found = member(json, "kinds")) effect.kinds = texts_from_json(list_of(*found, kMostChoices));
+  effect.memory = static_cast<std::size_t>(count(json, "memory", kMostEffectMemory, 0));
+  effect.steps_per_sample = static_cast<int>(count(json, "steps_per_sample", kMostStepsPerSample, 1));
+  effect.rough = flag(json, "rough");
+  effect.nonstationary = flag(json, "nonstationary");
+  effect.memoryless_linear = flag(json, "constant");
+  if (const Json* found = member(json, "equivalents")) effect.equivalents = texts_from_json(list_of(*found, kMostChoices));
+  effect.separation = text(json, "separation");
+  return effect;
+}
+
+/// What `read` gives if `check` finds nothing wrong with it.
+template <class Read, class Check>
+auto checked(Read&& read, Check&& check) -> tl::expected<decltype(read()), std::string> {
+  try {
+    auto description = read();
+    if (std::string why = check(description); !why.empty()) return tl::unexpected(std::move(why));
+    return description;
+  } catch (const Broken& broken) {
+    return tl::unexpected(std::string(broken.what()));
+  }
+}
+
+/// Reads a list of descriptions; none where it is absent.
+template <class Read, class Description>
+void read_list(const Json* list, Read&& read, std::vector<Description>& descriptions) {
+  if (list == nullptr) return;
+  for (const Json& entry : list_of(*list, kMostParameters)) {
+    auto description = read(entry);
+    if (!description) throw Broken(description.error());
+    descriptions.push_back(std::move(*description));
+  }
+}
+
 }  // namespace
 
 const char* parameter_type_name(std::uint32_t type) { return name_of(kTypes, type); }
@@ -327,23 +387,29 @@ nlohmann::ordered_json to_json(const PluginDescription& plugin) {
   }
   json["blocks"] = Json::array();
   for (const BlockDescription& block : plugin.blocks) json["blocks"].push_back(to_json(block));
+  for (const EffectDescription& effect : plugin.effects) json["effects"].push_back(to_json(effect));
+  for (const BlockDescription& model : plugin.base_models) json["base_models"].push_back(base_model_to_json(model));
   return json;
 }
 
 tl::expected<PluginDescription, std::string> plugin_from_json(const nlohmann::ordered_json& json) {
   try {
     if (!json.is_object()) throw Broken("a plugin is an object");
-    PluginDescription plugin{text(json, "file"),   text(json, "name"),   text(json, "version"),
-                             text(json, "build"),  text(json, "sha256"), {},
-                             text(json, "refused")};
+    PluginDescription plugin{text(json, "file"),
+                             text(json, "name"),
+                             text(json, "version"),
+                             text(json, "build"),
+                             text(json, "sha256"),
+                             {},
+                             text(json, "refused"),
+                             {},
+                             {}};
     const Json* blocks = member(json, "blocks");
     if (plugin.refused.empty() && blocks == nullptr) throw Broken("neither blocks nor a reason why it is refused");
     if (blocks == nullptr) return plugin;
-    for (const Json& entry : list_of(*blocks, kMostParameters)) {
-      auto block = from_json(entry);
-      if (!block) throw Broken(block.error());
-      plugin.blocks.push_back(std::move(*block));
-    }
+    read_list(blocks, from_json, plugin.blocks);
+    read_list(member(json, "effects"), effect_from_json, plugin.effects);
+    read_list(member(json, "base_models"), base_model_from_json, plugin.base_models);
     return plugin;
   } catch (const Broken& broken) {
     return tl::unexpected(std::string(broken.what()));
@@ -351,13 +417,37 @@ tl::expected<PluginDescription, std::string> plugin_from_json(const nlohmann::or
 }
 
 tl::expected<BlockDescription, std::string> from_json(const nlohmann::ordered_json& json) {
-  try {
-    BlockDescription block = block_from_json(json);
-    if (std::string why = check(block); !why.empty()) return tl::unexpected(std::move(why));
-    return block;
-  } catch (const Broken& broken) {
-    return tl::unexpected(std::string(broken.what()));
-  }
+  return checked([&] { return block_from_json(json); }, [](const BlockDescription& d) { return check(d); });
+}
+
+nlohmann::ordered_json base_model_to_json(const BlockDescription& model) {
+  Json json = to_json(model);
+  for (const char* name : {"realtime_safe", "in_place", "asynchronous", "cost_ns", "ports"}) json.erase(name);
+  return json;
+}
+
+tl::expected<BlockDescription, std::string> base_model_from_json(const nlohmann::ordered_json& json) {
+  return checked([&] { return block_from_json(json); }, check_base_model);
+}
+
+nlohmann::ordered_json to_json(const EffectDescription& effect) {
+  Json json{{"id", effect.id}, {"summary", effect.summary}};
+  if (!effect.doc.empty()) json["doc"] = effect.doc;
+  if (!effect.references.empty()) json["references"] = effect.references;
+  json["acts"] = acts_name(effect.acts);
+  if (!effect.kinds.empty()) json["kinds"] = effect.kinds;
+  if (effect.memory != 0) json["memory"] = effect.memory;
+  if (effect.steps_per_sample != 1) json["steps_per_sample"] = effect.steps_per_sample;
+  if (effect.rough) json["rough"] = true;
+  if (effect.nonstationary) json["nonstationary"] = true;
+  if (effect.memoryless_linear) json["constant"] = true;
+  if (!effect.equivalents.empty()) json["equivalents"] = effect.equivalents;
+  if (!effect.separation.empty()) json["separation"] = effect.separation;
+  return json;
+}
+
+tl::expected<EffectDescription, std::string> effect_from_json(const nlohmann::ordered_json& json) {
+  return checked([&] { return read_effect(json); }, [](const EffectDescription& d) { return check(d); });
 }
 
 }  // namespace bodeflow

@@ -15,7 +15,14 @@ nlohmann::ordered_json to_json(const BlockDescription& block);
 /// And back, checked as a plugin's own description is. Error: what is wrong with the JSON, whatever it holds.
 tl::expected<BlockDescription, std::string> from_json(const nlohmann::ordered_json& json);
 
-/// A plugin's description as JSON: file, name, version, build, sha256, and either blocks or why it is refused.
+/// The same for a base model, and for an effect.
+nlohmann::ordered_json base_model_to_json(const BlockDescription& model);
+tl::expected<BlockDescription, std::string> base_model_from_json(const nlohmann::ordered_json& json);
+nlohmann::ordered_json to_json(const EffectDescription& effect);
+tl::expected<EffectDescription, std::string> effect_from_json(const nlohmann::ordered_json& json);
+
+/// A plugin's description as JSON: file, name, version, build, sha256, and either blocks, effects and base models or why it is
+/// refused.
 nlohmann::ordered_json to_json(const PluginDescription& plugin);
 
 /// And back. Error: what is wrong with the JSON, whatever it holds.

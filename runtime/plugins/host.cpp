@@ -55,12 +55,34 @@ struct HostFunctions {
     return path;
   }
 
-  static const void* extension(const bf_host*, const char* id) noexcept {
+  static const void* const* list_parts(const bf_host* host, const char* kind, std::uint32_t* count) noexcept {
+    const void* const* list = nullptr;
+    *count = 0;
+    guarded(host, [&](Host& self) {
+      const std::vector<const void*>& found = self.parts_->list(kind == nullptr ? "" : kind);
+      list = found.data();
+      *count = static_cast<std::uint32_t>(found.size());
+      return BF_OK;
+    });
+    return list;
+  }
+
+  static std::int32_t create_part(const bf_host* host, const char* kind, const char* id, void* made) noexcept {
+    return guarded(host, [&](Host& self) {
+      if (kind == nullptr || id == nullptr) return self.set_error("a part's kind or id is a null pointer"), BF_FAILED;
+      if (auto done = self.parts_->make(kind, id, *host, made); !done) return self.set_error(done.error().c_str()), BF_FAILED;
+      return BF_OK;
+    });
+  }
+
+  static const void* extension(const bf_host* host, const char* id) noexcept {
     static const bf_log kLog{sizeof(bf_log), &log};
     static const bf_files kFiles{sizeof(bf_files), &note_input, &output_path};
+    static const bf_parts kParts{sizeof(bf_parts), &list_parts, &create_part};
     if (id == nullptr) return nullptr;
     if (std::string_view(id) == BF_EXTENSION_LOG) return &kLog;
     if (std::string_view(id) == BF_EXTENSION_FILES) return &kFiles;
+    if (std::string_view(id) == BF_EXTENSION_PARTS && Host::of(*host).parts_ != nullptr) return &kParts;
     return nullptr;
   }
 
@@ -78,8 +100,8 @@ struct HostFunctions {
   }
 };
 
-Host::Host(std::string block, std::shared_ptr<const HostServices> services)
-    : block_(std::move(block)), services_(std::move(services)) {
+Host::Host(std::string block, std::shared_ptr<const HostServices> services, std::shared_ptr<PartShelf> parts)
+    : block_(std::move(block)), services_(std::move(services)), parts_(std::move(parts)) {
   c_.struct_size = sizeof c_;
   c_.abi_major = BF_ABI_MAJOR;
   c_.abi_minor = BF_ABI_MINOR;

@@ -6,15 +6,16 @@
 #include <string>
 
 #include "plugins/instance.hpp"
+#include "plugins/part_shelf.hpp"
 
 namespace bodeflow {
 
-/// The bf_host of one block (or of a plugin, without name and services): error text, records, log and files.
+/// The bf_host of one block (or of a plugin, without name and services): error text, records, log, files and parts.
 /// Its address stays: blocks keep it.
 class Host {
  public:
-  /// `services` may be null: no log, no files.
-  Host(std::string block, std::shared_ptr<const HostServices> services);
+  /// `services` may be null: no log, no files. `parts` may be null: no effects and base models.
+  Host(std::string block, std::shared_ptr<const HostServices> services, std::shared_ptr<PartShelf> parts = nullptr);
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 
@@ -35,6 +36,7 @@ class Host {
   bf_host c_{};
   std::string block_;
   std::shared_ptr<const HostServices> services_;
+  std::shared_ptr<PartShelf> parts_;
   std::mutex mutex_;
   std::string error_;
   std::deque<std::string> paths_;  // given out by output_path: they live as long as the block

@@ -10,8 +10,8 @@
 namespace bodeflow {
 
 struct Instance::State {
-  State(std::string name, std::shared_ptr<const HostServices> services)
-      : block_name(name), host(std::move(name), std::move(services)) {}
+  State(std::string name, std::shared_ptr<const HostServices> services, std::shared_ptr<PartShelf> parts)
+      : block_name(name), host(std::move(name), std::move(services), std::move(parts)) {}
 
   std::string block_name;
   std::shared_ptr<const void> keep;  // libraries and descriptions
@@ -66,7 +66,7 @@ Instance::~Instance() {
 tl::expected<std::unique_ptr<Instance>, std::string> Instance::make(Registry& registry, const std::string& id, std::string name,
                                                                     std::shared_ptr<const HostServices> services) {
   std::unique_ptr<Instance> instance(new Instance);
-  instance->state_ = std::make_unique<State>(std::move(name), std::move(services));
+  instance->state_ = std::make_unique<State>(std::move(name), std::move(services), registry.parts());
   State& state = *instance->state_;
   auto block = registry.create(id, state.host.c());
   if (!block) return tl::unexpected(block.error());

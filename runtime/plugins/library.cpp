@@ -21,7 +21,7 @@ struct Library::State {
   boost::dll::shared_library library;
   Host host{"", nullptr};  // of `factories`: a plugin may keep it as long as it is loaded
   PluginDescription description;
-  std::map<std::string, const bf_factory*> blocks;
+  std::map<std::pair<std::string, std::string>, const bf_factory*> factories;  // by kind and id
 };
 
 namespace {
@@ -61,17 +61,42 @@ tl::expected<const bf_factory* const*, std::string> call_factories(const bf_plug
   return factories;
 }
 
-Result add_block(const bf_factory& factory, PluginDescription& plugin, std::map<std::string, const bf_factory*>& blocks) {
+/// Reads the factory's descriptor by `read` into `descriptions`. `what` is the kind in words.
+template <class C, class Description>
+Result add(const bf_factory& factory, const std::string& what, tl::expected<Description, std::string> (*read)(const C&),
+           std::vector<Description>& descriptions) {
+  if (factory.struct_size < sizeof(bf_factory)) {
+    return failure(fmt::format("a factory has {} bytes, at least {} expected", factory.struct_size, sizeof(bf_factory)));
+  }
   if (factory.id == nullptr) return failure("a factory's id is a null pointer");
   const std::string id = factory.id;
-  if (factory.descriptor == nullptr) return failure("block '" + id + "': its descriptor is a null pointer");
-  if (factory.create == nullptr) return failure("block '" + id + "': its function 'create' is a null pointer");
-  auto block = describe(*static_cast<const bf_block_descriptor*>(factory.descriptor));
-  if (!block) return failure(block.error());
-  if (block->id != id) return failure("block '" + block->id + "': its factory is named '" + id + "'");
-  if (!blocks.emplace(id, &factory).second) return failure("gives block '" + id + "' twice");
-  plugin.blocks.push_back(std::move(*block));
+  if (factory.descriptor == nullptr) return failure(what + " '" + id + "': its descriptor is a null pointer");
+  if (factory.create == nullptr) return failure(what + " '" + id + "': its function 'create' is a null pointer");
+  auto description = read(*static_cast<const C*>(factory.descriptor));
+  if (!description) return failure(description.error());
+  if (description->id != id) return failure(what + " '" + description->id + "': its factory is named '" + id + "'");
+  for (const Description& other : descriptions) {
+    if (other.id == id) return failure("gives " + what + " '" + id + "' twice");
+  }
+  descriptions.push_back(std::move(*description));
   return {};
+}
+
+/// False for a kind of a later host.
+tl::expected<bool, std::string> enter(const bf_factory& factory, PluginDescription& plugin) {
+  const std::string_view kind = factory.kind;
+  Result added;
+  if (kind == "block") {
+    added = add<bf_block_descriptor, BlockDescription>(factory, "block", describe, plugin.blocks);
+  } else if (kind == "effect") {
+    added = add<bf_effect_descriptor, EffectDescription>(factory, "effect", describe, plugin.effects);
+  } else if (kind == "base_model") {
+    added = add<bf_block_descriptor, BlockDescription>(factory, "base model", describe_base_model, plugin.base_models);
+  } else {
+    return false;
+  }
+  if (!added) return failure(added.error());
+  return true;
 }
 
 }  // namespace
@@ -105,27 +130,30 @@ tl::expected<std::unique_ptr<Library>, std::string> Library::load(const std::fil
   for (std::uint32_t i = 0; i < count; ++i) {
     const bf_factory* factory = (*factories)[i];
     if (factory == nullptr || factory->kind == nullptr) return failure("a factory or its kind is a null pointer");
-    if (std::string_view(factory->kind) != "block") continue;  // kinds of a later host
-    if (factory->struct_size < sizeof(bf_factory)) {
-      return failure(fmt::format("a factory has {} bytes, at least {} expected", factory->struct_size, sizeof(bf_factory)));
-    }
-    if (auto added = add_block(*factory, state.description, state.blocks); !added) return failure(added.error());
+    const auto entered = enter(*factory, state.description);
+    if (!entered) return failure(entered.error());
+    if (*entered) state.factories.emplace(std::pair(factory->kind, factory->id), factory);
   }
   return made;
 }
 
 tl::expected<bf_block, std::string> Library::create(const std::string& id, const bf_host& host) const {
-  const auto found = state_->blocks.find(id);
-  if (found == state_->blocks.end()) return failure("gives no block '" + id + "'");
   bf_block block{};
+  if (auto made = create_part("block", id, host, &block); !made) return failure(made.error());
+  return block;
+}
+
+Result Library::create_part(const std::string& kind, const std::string& id, const bf_host& host, void* made) const {
+  const auto found = state_->factories.find({kind, id});
+  if (found == state_->factories.end()) return failure(fmt::format("gives no {} '{}'", kind, id));
   std::int32_t result = BF_FAILED;
   try {
-    result = found->second->create(found->second, &host, &block);
+    result = found->second->create(found->second, &host, made);
   } catch (...) {
     return failure("an exception left the plugin's function 'create'");
   }
   if (result != BF_OK) return failure(Host::error_of(host));
-  return block;
+  return {};
 }
 
 }  // namespace bodeflow

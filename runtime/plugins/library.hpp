@@ -19,11 +19,15 @@ class Library {
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 
-  /// name, version, build and blocks; the other fields are empty.
+  /// name, version, build, blocks, effects and base models; the other fields are empty.
   const PluginDescription& description() const;
 
   /// Makes a block. `host` outlives it. Error: the plugin's own words.
   tl::expected<bf_block, std::string> create(const std::string& id, const bf_host& host) const;
+  /// Fills `made` with an effect (kind "effect": a bf_effect) or a base model ("base_model": a bf_base_model). Error: the
+  /// plugin's own words. Any thread.
+  tl::expected<void, std::string> create_part(const std::string& kind, const std::string& id, const bf_host& host,
+                                              void* made) const;
 
  private:
   Library();

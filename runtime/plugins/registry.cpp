@@ -6,6 +6,7 @@
 #include <atomic>
 #include <exception>
 #include <map>
+#include <mutex>
 #include <set>
 #include <system_error>
 #include <thread>
@@ -16,6 +17,7 @@
 #include "plugins/elf_note.hpp"
 #include "plugins/file_bytes.hpp"
 #include "plugins/library.hpp"
+#include "plugins/part_descriptors.hpp"
 #include "plugins/probe.hpp"
 #include "plugins/sha256.hpp"
 
@@ -122,47 +124,105 @@ std::vector<PluginDescription> find_plugins(const Registry::Options& options) {
   return plugins;
 }
 
-bool equal(const PluginDescription& a, const PluginDescription& b) {
-  if (a.name != b.name || a.version != b.version || a.blocks.size() != b.blocks.size()) return false;
-  for (std::size_t i = 0; i < a.blocks.size(); ++i) {
-    // As JSON: a NaN among the defaults equals itself there.
-    if (a.blocks[i] != b.blocks[i] && to_json(a.blocks[i]) != to_json(b.blocks[i])) return false;
-  }
-  return true;
+/// What a plugin says of itself, without the file. As JSON: a NaN among the defaults equals itself there.
+nlohmann::ordered_json words_of(PluginDescription plugin) {
+  plugin.file.clear();
+  plugin.sha256.clear();
+  plugin.build.clear();
+  plugin.refused.clear();
+  return to_json(plugin);
 }
 
 }  // namespace
 
-struct Registry::State {
+struct Registry::State : PartShelf {
   struct Place {
     std::size_t plugin = 0;
-    std::size_t block = 0;
+    std::size_t index = 0;
   };
+  using Places = std::map<std::string, Place>;
   std::vector<PluginDescription> plugins;
-  std::vector<std::unique_ptr<Library>> libraries;  // as plugins; null until first used
-  std::map<std::string, Place> blocks;
+  Places blocks, effects, base_models;
 
   void take(std::vector<PluginDescription> found) {
     plugins = std::move(found);
-    libraries.resize(plugins.size());
+    libraries_.resize(plugins.size());
     for (std::size_t i = 0; i < plugins.size(); ++i) {
       if (plugins[i].refused.empty()) enter(i);
     }
+    for (const auto& [id, place] : effects) descriptors_.add(plugins[place.plugin].effects[place.index]);
+    for (const auto& [id, place] : base_models) descriptors_.add_base_model(plugins[place.plugin].base_models[place.index]);
+  }
+
+  const std::vector<const void*>& list(const std::string& kind) const override { return descriptors_.list(kind); }
+
+  tl::expected<void, std::string> make(const std::string& kind, const std::string& id, const bf_host& host, void* made) override {
+    const Places& places = kind == "block" ? blocks : kind == "effect" ? effects : base_models;
+    const auto it = places.find(id);
+    if (it == places.end() || (kind != "block" && kind != "effect" && kind != "base_model")) {
+      return tl::unexpected(fmt::format("no plugin gives {} '{}'", kind == "base_model" ? "base model" : kind, id));
+    }
+    const PluginDescription& plugin = plugins[it->second.plugin];
+    const auto bad = [&](const std::string& why) {
+      return tl::unexpected(fmt::format("plugin '{}' ({}): {}", plugin.name, plugin.file, why));
+    };
+    const auto library = library_of(it->second.plugin);
+    if (!library) return bad(library.error());
+    if (auto done = (*library)->create_part(kind, id, host, made); !done) return bad(done.error());
+    return {};
   }
 
  private:
-  /// Enters a plugin's blocks; refuses it when an earlier one gives any of them.
+  /// Enters what a plugin gives; refuses it when an earlier one gives any of it.
   void enter(std::size_t index) {
     PluginDescription& plugin = plugins[index];
-    for (const BlockDescription& block : plugin.blocks) {
-      const auto it = blocks.find(block.id);
-      if (it == blocks.end()) continue;
-      plugin.refused = fmt::format("gives block '{}', which {} gives already", block.id, plugins[it->second.plugin].file);
-      return;
-    }
+    const bool free = is_free(plugin, plugin.blocks, blocks, "block") && is_free(plugin, plugin.effects, effects, "effect") &&
+                      is_free(plugin, plugin.base_models, base_models, "base model");
+    if (!free) return;
     for (std::size_t k = 0; k < plugin.blocks.size(); ++k) blocks.emplace(plugin.blocks[k].id, Place{index, k});
+    for (std::size_t k = 0; k < plugin.effects.size(); ++k) effects.emplace(plugin.effects[k].id, Place{index, k});
+    for (std::size_t k = 0; k < plugin.base_models.size(); ++k) base_models.emplace(plugin.base_models[k].id, Place{index, k});
   }
+
+  template <class Description>
+  bool is_free(PluginDescription& plugin, const std::vector<Description>& given, const Places& taken, const char* what) const {
+    for (const Description& one : given) {
+      const auto it = taken.find(one.id);
+      if (it == taken.end()) continue;
+      plugin.refused = fmt::format("gives {} '{}', which {} gives already", what, one.id, plugins[it->second.plugin].file);
+      return false;
+    }
+    return true;
+  }
+
+  tl::expected<const Library*, std::string> library_of(std::size_t index) {
+    const std::lock_guard lock(mutex_);
+    std::unique_ptr<Library>& library = libraries_[index];
+    if (library == nullptr) {
+      auto loaded = Library::load(plugins[index].file);
+      if (!loaded) return tl::unexpected(loaded.error());
+      if (words_of((*loaded)->description()) != words_of(plugins[index]))
+        return tl::unexpected(std::string("describes itself otherwise than when it was probed; was the file replaced?"));
+      library = std::move(*loaded);
+    }
+    return library.get();
+  }
+
+  std::mutex mutex_;                                 // of `libraries_`: parts are made on any thread
+  std::vector<std::unique_ptr<Library>> libraries_;  // as plugins; null until first used
+  PartDescriptors descriptors_;
 };
+
+namespace {
+
+template <class Places>
+std::vector<std::string> ids_of(const Places& places) {
+  std::vector<std::string> found;
+  for (const auto& [id, place] : places) found.push_back(id);
+  return found;
+}
+
+}  // namespace
 
 Registry::Registry(Options options) : state_(std::make_shared<State>()) { state_->take(find_plugins(options)); }
 
@@ -178,15 +238,13 @@ Registry& Registry::operator=(Registry&&) noexcept = default;
 
 const std::vector<PluginDescription>& Registry::plugins() const { return state_->plugins; }
 
-std::vector<std::string> Registry::ids() const {
-  std::vector<std::string> found;
-  for (const auto& [id, place] : state_->blocks) found.push_back(id);
-  return found;
-}
+std::vector<std::string> Registry::ids() const { return ids_of(state_->blocks); }
+std::vector<std::string> Registry::effects() const { return ids_of(state_->effects); }
+std::vector<std::string> Registry::base_models() const { return ids_of(state_->base_models); }
 
 const BlockDescription* Registry::find(const std::string& id) const {
   const auto it = state_->blocks.find(id);
-  return it == state_->blocks.end() ? nullptr : &state_->plugins[it->second.plugin].blocks[it->second.block];
+  return it == state_->blocks.end() ? nullptr : &state_->plugins[it->second.plugin].blocks[it->second.index];
 }
 
 const PluginDescription* Registry::plugin_of(const std::string& id) const {
@@ -194,26 +252,29 @@ const PluginDescription* Registry::plugin_of(const std::string& id) const {
   return it == state_->blocks.end() ? nullptr : &state_->plugins[it->second.plugin];
 }
 
+const EffectDescription* Registry::find_effect(const std::string& id, const PluginDescription** plugin) const {
+  const auto it = state_->effects.find(id);
+  if (it == state_->effects.end()) return nullptr;
+  const PluginDescription& owner = state_->plugins[it->second.plugin];
+  if (plugin != nullptr) *plugin = &owner;
+  return &owner.effects[it->second.index];
+}
+
+const BlockDescription* Registry::find_base_model(const std::string& id, const PluginDescription** plugin) const {
+  const auto it = state_->base_models.find(id);
+  if (it == state_->base_models.end()) return nullptr;
+  const PluginDescription& owner = state_->plugins[it->second.plugin];
+  if (plugin != nullptr) *plugin = &owner;
+  return &owner.base_models[it->second.index];
+}
+
 tl::expected<bf_block, std::string> Registry::create(const std::string& id, const bf_host& host) {
-  const auto it = state_->blocks.find(id);
-  if (it == state_->blocks.end()) return tl::unexpected("no plugin gives block '" + id + "'");
-  const PluginDescription& plugin = state_->plugins[it->second.plugin];
-  std::unique_ptr<Library>& library = state_->libraries[it->second.plugin];
-  const auto bad = [&](const std::string& why) {
-    return tl::unexpected(fmt::format("plugin '{}' ({}): {}", plugin.name, plugin.file, why));
-  };
-  if (library == nullptr) {
-    auto loaded = Library::load(plugin.file);
-    if (!loaded) return bad(loaded.error());
-    if (!equal((*loaded)->description(), plugin))
-      return bad("describes itself otherwise than when it was probed; was the file replaced?");
-    library = std::move(*loaded);
-  }
-  auto block = library->create(id, host);
-  if (!block) return bad(block.error());
+  bf_block block{};
+  if (auto made = state_->make("block", id, host, &block); !made) return tl::unexpected(made.error());
   return block;
 }
 
+std::shared_ptr<PartShelf> Registry::parts() const { return state_; }
 std::shared_ptr<const void> Registry::keep_alive() const { return state_; }
 
 }  // namespace bodeflow

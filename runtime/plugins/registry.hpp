@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "plugins/description.hpp"
+#include "plugins/part_shelf.hpp"
 
 namespace bodeflow {
 
@@ -38,6 +39,15 @@ class Registry {
   /// The description of a block, or nullptr. Stable for the life of the registry.
   const BlockDescription* find(const std::string& id) const;
   const PluginDescription* plugin_of(const std::string& id) const;
+
+  /// Ids of the effects and base models of all usable plugins, sorted.
+  std::vector<std::string> effects() const;
+  std::vector<std::string> base_models() const;
+  /// Their descriptions with the plugins that give them, or nullptr.
+  const EffectDescription* find_effect(const std::string& id, const PluginDescription** plugin = nullptr) const;
+  const BlockDescription* find_base_model(const std::string& id, const PluginDescription** plugin = nullptr) const;
+  /// What hosts of blocks offer; lives beyond the registry.
+  std::shared_ptr<PartShelf> parts() const;
 
   /// Makes a block (loads its plugin if needed). The library outlives the block. Error: why not, with the plugin's name.
   /// [control] `host` outlives the block.

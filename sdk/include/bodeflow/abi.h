@@ -20,7 +20,7 @@ extern "C" {
 #endif
 
 #define BF_ABI_MAJOR 0
-#define BF_ABI_MINOR 2
+#define BF_ABI_MINOR 3
 /* "BODEFLOW" read as a little-endian integer. */
 #define BF_PLUGIN_MAGIC UINT64_C(0x574F4C4645444F42)
 /* The one exported data symbol of a plugin, of type bf_plugin. */
@@ -193,7 +193,7 @@ typedef struct bf_host {
   void* context;
   /* [any thread] States why the call in progress is about to return BF_FAILED. The text is copied. */
   void (*error)(const struct bf_host* host, const char* text);
-  /* [control] A service by its id ("bodeflow.log/1"), or NULL. */
+  /* [any thread] A service by its id ("bodeflow.log/1"), or NULL. */
   const void* (*extension)(const struct bf_host* host, const char* id);
   /* [any thread] A record of `size` bytes, count 1, zeroed; writable until it is emitted. NULL when out of memory. */
   bf_record* (*record_create)(const struct bf_host* host, uint64_t size);
@@ -300,16 +300,254 @@ typedef struct bf_advice {
                     void (*tell)(void* context, int32_t level, const char* text));
 } bf_advice;
 
+/* ---- parts: effects and base models ----------------------------------------------------------------------------- */
+
+/* What a tracer fits: a base model is a plant with parameters, an effect is something physical that a plant may lack. Both
+ * are made once and never change afterwards (a base model: once it is configured), so their functions are pure and may be
+ * called by several threads at the same time. `p` and `v` are the values of the parameters in their order. A function
+ * without a result that fails gives NaN instead, and tells the reason once through the host's log. */
+
+typedef struct bf_numbers {
+  const double* values; /* complex ones as re, im pairs */
+  uint64_t count;       /* of doubles */
+} bf_numbers;
+
+enum {
+  BF_FIT_LOGARITHMIC = 1, /* positive by nature, fitted as its logarithm */
+  BF_FIT_EACH_RECORD = 2  /* has a value of its own in every record */
+};
+
+typedef struct bf_fit_parameter {
+  uint32_t struct_size;
+  uint32_t flags;
+  const char* name;
+  const char* unit;
+  const char* doc;
+  double low; /* what physics allows: -inf, +inf where free */
+  double high;
+  double scale; /* a typical size of what is not fitted as a logarithm */
+} bf_fit_parameter;
+
+/* A spot of a plant where something may be missing. */
+typedef struct bf_place {
+  uint32_t struct_size;
+  uint32_t reserved;
+  const char* name; /* "" of the empty place */
+  const char* kind;
+  const char* flow_unit;
+  const char* stored_unit;
+  const char* reaction_unit;
+  double coefficient; /* linear one of the base model there */
+  double flow;        /* largest magnitudes on the records */
+  double stored;
+  double effort;
+} bf_place;
+
+/* What a law sees at its place, at the end of a step of the simulation. */
+typedef struct bf_signals {
+  uint32_t struct_size;
+  uint32_t reserved;
+  double flow;
+  double stored;
+  double time_s; /* since the record began */
+  double step_s;
+  double gain; /* by how much a unit of reaction lowers the flow within the step */
+} bf_signals;
+
+typedef struct bf_reaction {
+  double value;
+  double by_flow; /* slopes */
+  double by_stored;
+} bf_reaction;
+
+/* Takes what a function of a part gives. Valid during the call; called on its thread; what is handed over is copied. */
+typedef struct bf_answer {
+  uint32_t struct_size;
+  uint32_t reserved;
+  void* context;
+  /* Before BF_FAILED: the reason. */
+  void (*error)(void* context, const char* text);
+  void (*text)(void* context, const char* text);
+  void (*values)(void* context, const double* values, uint64_t count);
+  void (*parameter)(void* context, const bf_fit_parameter* parameter);
+  void (*place)(void* context, const bf_place* place);
+  void (*input)(void* context, int32_t channel, int32_t derivative);
+} bf_answer;
+
+/* How an effect acts. */
+enum {
+  BF_ACTS_LAW = 1,        /* at a place, `react`: a reaction over flow and stored quantity */
+  BF_ACTS_IMMITTANCE = 2, /* at a place, `transfer`: effort lost = Z(s) flow */
+  BF_ACTS_INPUT = 3,      /* `map`: on the samples of the input */
+  BF_ACTS_OUTPUT = 4,     /* `map`: on the samples of the output */
+  BF_ACTS_SERIES = 5,     /* `transfer`: multiplies the response */
+  BF_ACTS_PARALLEL = 6,   /* `transfer`: added to the response from the first input */
+  BF_ACTS_DELAY = 7,      /* `delay_s`: the output comes later */
+  BF_ACTS_TONE = 8        /* `tones_hz`: sinusoids that the input does not make */
+};
+enum {
+  BF_EFFECT_ROUGH = 1,            /* the law jumps or has corners */
+  BF_EFFECT_NONSTATIONARY = 2,    /* depends on the time since the record began */
+  BF_EFFECT_MEMORYLESS_LINEAR = 4 /* the map adds a constant */
+};
+
+/* Descriptor of the kind "effect". */
+typedef struct bf_effect_descriptor {
+  uint32_t struct_size;
+  uint32_t flags;
+  uint32_t acts;
+  uint32_t steps_per_sample; /* of the simulation, at least 1 */
+  uint64_t memory;           /* numbers that a law or a map keeps from step to step */
+  uint32_t kind_count;
+  uint32_t equivalent_count;
+  const char* id; /* "family.name" */
+  const char* summary;
+  const char* doc;
+  const char* references;
+  const char* separation;         /* what would tell the equivalents apart */
+  const char* const* kinds;       /* of places, for laws and immittances */
+  const char* const* equivalents; /* names of effects that no experiment of this kind tells apart */
+} bf_effect_descriptor;
+
+/* What is known before an effect is fitted; see <bodeflow/effect.hpp>. */
+typedef struct bf_situation {
+  uint32_t struct_size;
+  uint32_t reserved;
+  const char* input_unit;
+  const char* output_unit;
+  double sample_time_s;
+  double duration_s;
+  double input_peak;
+  double input_rms;
+  double output_peak;
+  double output_rms;
+  double residual_mean;
+  double residual_rms;
+  const bf_place* place;
+  bf_numbers line_hz;
+  bf_numbers response; /* complex */
+  bf_numbers missing;  /* complex */
+  bf_numbers missing_std;
+  bf_numbers peaks_hz;
+  bf_numbers jumps_s;
+} bf_situation;
+
+/* What the factory of an effect makes. All functions are there; those that do not belong to the way it acts are not called. */
+typedef struct bf_effect {
+  uint32_t struct_size;
+  uint32_t reserved;
+  void* self;
+  /* answer->text: why it can't act there, not called if it can. */
+  int32_t (*refuses)(void* self, const bf_situation* situation, const bf_answer* answer);
+  /* answer->parameter for each. */
+  int32_t (*parameters)(void* self, const bf_situation* situation, const bf_answer* answer);
+  /* answer->values for each start. */
+  int32_t (*starts)(void* self, const bf_situation* situation, const bf_answer* answer);
+  /* answer->text: the effect with its values, as a part of a sentence. */
+  int32_t (*sentence)(void* self, const bf_numbers* value, const bf_numbers* std, const bf_situation* situation,
+                      const bf_answer* answer);
+  /* `memory` is what stood in `next` after the step before; several calls a step with trial values. */
+  void (*react)(void* self, const double* p, const bf_signals* signals, const double* memory, double* next,
+                bf_reaction* reaction);
+  /* The sample that takes the place of x, once a sample in their order. */
+  double (*map)(void* self, const double* p, double x, double time_s, double* memory);
+  /* At s = re + j im; writes re, im. */
+  void (*transfer)(void* self, const double* p, double re, double im, double* result);
+  double (*delay_s)(void* self, const double* p);
+  /* answer->values once. */
+  int32_t (*tones_hz)(void* self, const double* p, const bf_answer* answer);
+  void (*destroy)(void* self);
+} bf_effect;
+
+enum { BF_HOLD_ZERO_ORDER = 1, BF_HOLD_FIRST_ORDER = 2, BF_HOLD_BAND_LIMITED = 3 };
+enum {
+  BF_BASE_STATE_SPACE = 1, /* `state_space` fills the plant; otherwise only `response` */
+  BF_BASE_LAWS = 2         /* has laws of its own, `react` */
+};
+
+/* What a configured base model is beside its lists. */
+typedef struct bf_base_facts {
+  uint32_t struct_size;
+  uint32_t flags;
+  uint32_t hold;
+  uint32_t reserved;
+  double delay_s;
+  double filter_hz;
+} bf_base_facts;
+
+/* A linear plant; the matrices are row-major, see <bodeflow/plant.hpp>. */
+typedef struct bf_linear_plant {
+  uint32_t struct_size;
+  int32_t states;
+  int32_t inputs;
+  int32_t places;
+  /* The first call of whoever fills it: sets the sizes, and the matrices to zeros. BF_FAILED: no memory. */
+  int32_t (*resize)(struct bf_linear_plant* plant, int32_t states, int32_t inputs, int32_t places);
+  void* context;
+  double *A, *B, *E, *Cf, *Df, *Ff, *Cs, *Ds, *Fs, *C, *D, *F;
+} bf_linear_plant;
+
+/* A measured response between an input and the output. */
+typedef struct bf_measured_response {
+  uint32_t struct_size;
+  uint32_t reserved;
+  bf_numbers frequency_hz;
+  bf_numbers response; /* complex */
+  bf_numbers weight;
+  bf_numbers known;
+} bf_measured_response;
+
+/* What the factory of a base model makes; the descriptor of the kind "base_model" is a bf_block_descriptor without ports.
+ * Life: create, configure, use_model where there is one, then all others. */
+typedef struct bf_base_model {
+  uint32_t struct_size;
+  uint32_t reserved;
+  void* self;
+  /* One value per described parameter, in that order; checked against the description by the caller. */
+  int32_t (*configure)(void* self, const bf_parameter_value* values, uint32_t count, const bf_answer* answer);
+  /* A record of a model, for a black box. */
+  int32_t (*use_model)(void* self, const bf_record* record, const bf_answer* answer);
+  int32_t (*facts)(void* self, bf_base_facts* facts, const bf_answer* answer);
+  int32_t (*parameters)(void* self, const bf_answer* answer);  /* answer->parameter for each */
+  int32_t (*places)(void* self, const bf_answer* answer);      /* answer->place for each */
+  int32_t (*known)(void* self, const bf_answer* answer);       /* answer->parameter for each */
+  int32_t (*inputs)(void* self, const bf_answer* answer);      /* answer->input for each */
+  /* answer->text once: of the output over the first input, "" for any. */
+  int32_t (*response_unit)(void* self, const bf_answer* answer);
+  int32_t (*conventions)(void* self, const bf_answer* answer); /* answer->text for each */
+  /* answer->values for each start. */
+  int32_t (*starts)(void* self, const bf_measured_response* const* measured, uint32_t count, const bf_answer* answer);
+  /* 1: filled; 0: outside of the domain of the parameters. */
+  int32_t (*state_space)(void* self, const double* v, const double* known, bf_linear_plant* plant);
+  /* At s = re + j im: (1 + places) x (inputs + places) complex numbers. 1: filled; 0: outside of the domain. */
+  int32_t (*response)(void* self, const double* v, const double* known, double re, double im, double* matrix);
+  void (*react)(void* self, const double* v, const double* known, uint64_t place, const bf_signals* signals,
+                bf_reaction* reaction);
+  void (*destroy)(void* self);
+} bf_base_model;
+
+/* A service of the host: the parts of all plugins. */
+#define BF_EXTENSION_PARTS "bodeflow.parts/1"
+typedef struct bf_parts {
+  uint32_t struct_size;
+  /* [any thread] The descriptors of that kind ("effect": const bf_effect_descriptor*, "base_model": const
+   * bf_block_descriptor*), ordered by id. They live as long as the block. */
+  const void* const* (*list)(const bf_host* host, const char* kind, uint32_t* count);
+  /* [any thread] Fills `made` (bf_effect*, bf_base_model*) with a new part, which is destroyed before the block is. */
+  int32_t (*create)(const bf_host* host, const char* kind, const char* id, void* made);
+} bf_parts;
+
 /* ---- plugin ----------------------------------------------------------------------------------------------------- */
 
 /* Something that a plugin can make. Kinds that the host does not know are ignored. */
 typedef struct bf_factory {
   uint32_t struct_size;
   uint32_t reserved;
-  const char* kind; /* "block" */
+  const char* kind; /* "block", "effect", "base_model" */
   const char* id;
-  const void* descriptor; /* kind "block": const bf_block_descriptor* */
-  /* [control] Fills `made` (kind "block": bf_block*). `host` outlives what is made. */
+  const void* descriptor; /* const bf_block_descriptor*; of an effect const bf_effect_descriptor* */
+  /* Fills `made` (bf_block*, bf_effect*, bf_base_model*). `host` outlives what is made. [control] for blocks, [any thread]
+   * for the others. */
   int32_t (*create)(const struct bf_factory* factory, const bf_host* host, void* made);
 } bf_factory;
 

@@ -32,7 +32,9 @@ struct PlantInput {
   int derivative = 0;
 };
 
-/// What a plant is declared to be, with parameters to be fitted. Its functions are pure. `v` are the values of `parameters`,
+/// What a plant is declared to be, with parameters to be fitted. A class that derives from it has a default constructor and
+/// `static void describe(Describe&)`: id, summary, doc, references, and what can be declared as parameters; no ports. Configured,
+/// it does not change any more, and its functions are pure: one object serves any thread. `v` are the values of `parameters`,
 /// `known` the values of what `known` names, of the record at hand.
 ///
 /// A model is given by `state_space`, or, where it has none (a fractional power of s), by `response`; the latter serves periodic
@@ -54,7 +56,8 @@ class BaseModel {
   /// Where derivatives are formed: the corner of the low-pass filter, applied forth and back to input and output; 0: none.
   virtual double filter_hz() const { return 0.0; }
   virtual Timing timing() const { return {}; }
-  /// Unit of the output over the first input where physics fixes its dimension ("ohm"): records with another are refused; "": any.
+  /// Unit of the output over the first input where physics fixes its dimension ("ohm"): records with another are refused; "":
+  /// any.
   virtual std::string response_unit() const { return {}; }
   /// What is declared beside the parameters (hold, delay, which input), in words.
   virtual std::vector<std::string> conventions() const { return {}; }

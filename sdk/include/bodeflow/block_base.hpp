@@ -11,6 +11,8 @@
 namespace bodeflow {
 inline namespace v0 {
 
+class Parts;
+
 /// What `activate` is told.
 struct Activation {
   std::uint64_t max_count = 0;  ///< most firings in one process call
@@ -75,6 +77,8 @@ class Block {
   void note_input(const std::string& path) const { services_.note_input(path); }
   /// The absolute path of a file that this block may write, inside the run directory; nothing while a graph is only checked.
   std::optional<std::string> output_path(const std::string& name) const { return services_.output_path(name); }
+  /// The effects and base models of all plugins; include <bodeflow/parts.hpp>.
+  Parts parts() const;
 
  private:
   template <class B>

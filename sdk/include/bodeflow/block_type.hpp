@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bodeflow/describe.hpp>
+#include <bodeflow/words.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -9,11 +10,12 @@
 namespace bodeflow {
 inline namespace v0 {
 
-/// The checked description of a block class and the C descriptor that points into it. Lives as long as the plugin.
+/// The checked description of a class of blocks or base models and the C descriptor that points into it. Lives as long as the
+/// plugin.
 class BlockType {
  public:
-  /// Throws Failure with everything that is wrong with the draft, a line each.
-  explicit BlockType(BlockDraft draft) : draft_(std::move(draft)) {
+  /// Throws Failure with everything that is wrong with the draft, a line each. `kind` is what messages call it.
+  explicit BlockType(BlockDraft draft, const char* kind = "block") : draft_(std::move(draft)), kind_(kind) {
     check();
     build();
   }
@@ -36,33 +38,13 @@ class BlockType {
   }
 
  private:
-  static bool is_word(const std::string& text) {
-    if (text.empty() || text[0] < 'a' || text[0] > 'z') return false;
-    for (const char c : text) {
-      if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_')) return false;
-    }
-    return true;
-  }
-
-  /// Words with dots between them: "family.name", "lines.first".
-  static bool is_dotted(const std::string& text, std::size_t fewest, std::size_t most) {
-    std::size_t words = 0, begin = 0;
-    while (true) {
-      const std::size_t dot = text.find('.', begin);
-      if (!is_word(text.substr(begin, dot - begin))) return false;
-      ++words;
-      if (dot == std::string::npos) return words >= fewest && words <= most;
-      begin = dot + 1;
-    }
-  }
-
   void wrong(const std::string& what) {
     if (!problems_.empty()) problems_ += '\n';
-    problems_ += "block '" + draft_.id + "': " + what;
+    problems_ += kind_ + " '" + draft_.id + "': " + what;
   }
 
   void check() {
-    if (!is_dotted(draft_.id, 2, 2)) wrong("id has not the form family.name (lower-case letters, digits, _)");
+    if (!detail::is_dotted(draft_.id, 2, 2)) wrong("id has not the form family.name (lower-case letters, digits, _)");
     if (draft_.summary.empty()) wrong("summary is missing");
     if (!(draft_.cost_ns >= 0.0) || std::isinf(draft_.cost_ns)) wrong("cost_ns is not a finite number of at least 0");
     check_ports();
@@ -77,7 +59,7 @@ class BlockType {
       const char* kind = p.kind == BF_STREAM ? "stream" : "message";
       const char* direction = p.direction == BF_IN ? "input" : "output";
       const std::string what = std::string(kind) + " " + direction + " '" + p.name + "'";
-      if (!is_word(p.name)) wrong(what + ": name is not a word of lower-case letters, digits and _");
+      if (!detail::is_word(p.name)) wrong(what + ": name is not a word of lower-case letters, digits and _");
       int& expected = next[p.kind == BF_STREAM ? 0 : 1][p.direction == BF_IN ? 0 : 1];
       if (p.index != expected) {
         wrong(what + " has index " + std::to_string(p.index) + ", but stands at place " + std::to_string(expected) +
@@ -114,7 +96,7 @@ class BlockType {
   void check_parameter(std::size_t i) {
     ParameterDraft& p = draft_.parameters[i];
     const std::string what = "parameter '" + p.name + "'";
-    if (!is_dotted(p.name, 1, 4)) wrong(what + ": name is not made of words of lower-case letters, digits and _");
+    if (!detail::is_dotted(p.name, 1, 4)) wrong(what + ": name is not made of words of lower-case letters, digits and _");
     const std::vector<std::string> names = names_of(p);
     for (std::size_t j = 0; j < i; ++j) {
       for (const std::string& other : names_of(draft_.parameters[j])) {
@@ -230,6 +212,7 @@ class BlockType {
   }
 
   BlockDraft draft_;
+  std::string kind_;
   std::string problems_;
   std::vector<bf_port_descriptor> ports_;
   std::vector<bf_parameter_descriptor> parameters_;

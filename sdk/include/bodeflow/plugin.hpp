@@ -2,6 +2,7 @@
 
 #include <bodeflow/abi.h>
 
+#include <bodeflow/base_border.hpp>
 #include <bodeflow/border.hpp>
 #include <cstddef>
 #include <string>
@@ -11,14 +12,14 @@
 namespace bodeflow {
 inline namespace v0 {
 
-/// The factories of block classes, described and checked.
+/// The factories of classes of blocks, effects and base models, described and checked.
 class FactoryTable {
  public:
   /// Throws Failure with all that is wrong with the descriptions.
-  template <class... Blocks>
+  template <class... Classes>
   static FactoryTable of() {
     FactoryTable table;
-    (table.add<Blocks>(), ...);
+    (table.add<Classes>(), ...);
     if (!table.problems_.empty()) fail(table.problems_);
     return table;
   }
@@ -27,17 +28,32 @@ class FactoryTable {
   std::uint32_t count() const { return static_cast<std::uint32_t>(places_.size()); }
 
  private:
-  template <class B>
+  /// Calls `enter` with the kind, id, descriptor and function of class T.
+  template <class T, class Enter>
+  static void describe(Enter&& enter) {
+    if constexpr (std::is_base_of_v<Effect, T>) {
+      enter("effect", effect_type<T>().c().id, &effect_type<T>().c(), EffectBorder<T>::create);
+    } else if constexpr (std::is_base_of_v<BaseModel, T>) {
+      enter("base_model", base_type<T>().c().id, &base_type<T>().c(), BaseBorder<T>::create);
+    } else {
+      enter("block", block_type<T>().c().id, &block_type<T>().c(), Border<T>::create);
+    }
+  }
+
+  template <class T>
   void add() {
     // Where the factory lives as long as the plugin, whatever happens to the table.
     static bf_factory factory{};
     try {
-      const bf_block_descriptor& d = block_type<B>().c();
-      factory = {sizeof factory, 0, "block", d.id, &d, Border<B>::create};
-      for (const bf_factory* other : places_) {
-        if (std::string_view(other->id) == d.id) fail(std::string("block id '") + d.id + "' stands twice");
-      }
-      places_.push_back(&factory);
+      describe<T>([&](const char* kind, const char* id, const void* descriptor, auto create) {
+        for (const bf_factory* other : places_) {
+          if (std::string_view(other->kind) == kind && std::string_view(other->id) == id) {
+            fail(std::string(kind) + " id '" + id + "' stands twice");
+          }
+        }
+        factory = {sizeof factory, 0, kind, id, descriptor, create};
+        places_.push_back(&factory);
+      });
     } catch (const Failure& failure) {
       if (!problems_.empty()) problems_ += '\n';
       problems_ += failure.what();
@@ -48,13 +64,13 @@ class FactoryTable {
   std::string problems_;
 };
 
-/// The factories of a plugin with the block classes Blocks, for bf_plugin.factories.
-template <class... Blocks>
+/// The factories of a plugin with these classes, for bf_plugin.factories.
+template <class... Classes>
 const bf_factory* const* plugin_factories(const bf_host* host, std::uint32_t* count) noexcept {
   const bf_factory* const* places = nullptr;
   *count = 0;
   guarded(host, [&] {
-    static const FactoryTable table = FactoryTable::of<Blocks...>();
+    static const FactoryTable table = FactoryTable::of<Classes...>();
     places = table.places();
     *count = table.count();
   });
@@ -111,8 +127,8 @@ constexpr bool fits_note(const char (&text)[N], std::size_t room) {
           ".skip 64 - (. - 772b)\n"                       \
           ".popsection\n")
 
-/// Makes the shared library that is being compiled a plugin with these block classes: exactly once in it, at namespace scope.
-/// Name and version are literals: BODEFLOW_PLUGIN("example", "1.0.0", Gain, Delay)
+/// Makes the shared library that is being compiled a plugin with these classes of blocks, effects and base models: exactly once
+/// in it, at namespace scope. Name and version are literals: BODEFLOW_PLUGIN("example", "1.0.0", Gain, Delay)
 #define BODEFLOW_PLUGIN(name, version, ...)                                                                                    \
   static_assert(::bodeflow::fits_note(name, 48), "a plugin's name has 1 to 47 plain characters");                              \
   static_assert(::bodeflow::fits_note(version, 16), "a plugin's version has 1 to 15 plain characters");                        \

@@ -32,6 +32,12 @@ class Services {
     return std::string(path);
   }
 
+  /// Of a block that a host made.
+  const bf_host& host() const {
+    if (host_ == nullptr) fail("the block has no host");
+    return *host_;
+  }
+
   /// Thrown when the host has stated the reason itself.
   struct HostRefused {};
 

@@ -12,7 +12,7 @@ void AsymmetricFriction::describe(DescribeEffect& effect) {
           "F forth, G back, between them at rest. It is dry friction of (F + G) / 2 and a constant load of (F - G) / 2 while it "
           "moves.")
       .acts(Acts::law, {"bearing"})
-      .steps_per_sample(8)
+      .steps_per_sample(4)
       .rough();
 }
 

@@ -18,8 +18,7 @@ void BoucWen::describe(DescribeEffect& effect) {
       .reference("Y.-K. Wen, Method for random vibration of hysteretic systems, ASCE J. Engineering Mechanics 102 (1976) 249")
       .acts(Acts::law, {"spring", "coupling", "core"})
       .memory(3)
-      .steps_per_sample(8)
-      .rough();
+      .steps_per_sample(4);
 }
 
 std::vector<FitParameter> BoucWen::parameters(const Situation& s) const {

@@ -13,7 +13,7 @@ void CoulombFriction::describe(DescribeEffect& effect) {
           "does not chatter. Wrong where the contact is elastic before it slides (dahl_friction) or greater at rest "
           "(stribeck_friction).")
       .acts(Acts::law, {"bearing"})
-      .steps_per_sample(8)
+      .steps_per_sample(4)
       .rough();
 }
 

@@ -11,8 +11,7 @@ void CubicDamping::describe(DescribeEffect& effect) {
   effect.id("residual.cubic_damping")
       .summary("Damping that grows with the third power of the velocity")
       .doc("c v^3 against the movement.")
-      .acts(Acts::law, {"bearing"})
-      .steps_per_sample(4);
+      .acts(Acts::law, {"bearing"});
 }
 
 std::vector<FitParameter> CubicDamping::parameters(const Situation& s) const {

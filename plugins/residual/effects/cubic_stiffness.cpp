@@ -12,8 +12,7 @@ void CubicStiffness::describe(DescribeEffect& effect) {
       .doc(
           "k x^3 is added: k above 0 hardens, below 0 softens. Wrong far beyond the deflections measured, where a soft spring "
           "would push away.")
-      .acts(Acts::law, {"spring", "coupling"})
-      .steps_per_sample(4);
+      .acts(Acts::law, {"spring", "coupling"});
 }
 
 std::vector<FitParameter> CubicStiffness::parameters(const Situation& s) const {

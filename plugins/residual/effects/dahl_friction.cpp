@@ -15,8 +15,7 @@ void DahlFriction::describe(DescribeEffect& effect) {
       .reference("P. R. Dahl, A solid friction model, Aerospace Corporation TOR-0158(3107-18)-1, 1968")
       .acts(Acts::law, {"bearing"})
       .memory(2)
-      .steps_per_sample(8)
-      .rough();
+      .steps_per_sample(4);
 }
 
 std::vector<FitParameter> DahlFriction::parameters(const Situation& s) const {

@@ -10,7 +10,6 @@ void DampingStep::describe(DescribeEffect& effect) {
       .summary("The damping jumps while the record is taken")
       .doc("From an instant on, damping is added. In every record at the same time since it began: wrong where it happens once.")
       .acts(Acts::law, {"bearing"})
-      .steps_per_sample(2)
       .nonstationary();
 }
 

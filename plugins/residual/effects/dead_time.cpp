@@ -15,7 +15,7 @@ void DeadTime::describe(DescribeEffect& effect) {
           "S.-G. Jeong, M.-H. Park, The analysis and compensation of dead-time effects in PWM inverters, IEEE Trans. Industrial "
           "Electronics 38 (1991) 108")
       .acts(Acts::law, {"inverter"})
-      .steps_per_sample(10)
+      .steps_per_sample(4)
       .rough();
 }
 

@@ -21,8 +21,7 @@ void LugreFriction::describe(DescribeEffect& effect) {
       .reference("H. Olsson et al., Friction models and friction compensation, European Journal of Control 4 (1998) 176")
       .acts(Acts::law, {"bearing"})
       .memory(2)
-      .steps_per_sample(8)
-      .rough();
+      .steps_per_sample(4);
 }
 
 std::vector<FitParameter> LugreFriction::parameters(const Situation& s) const {

@@ -11,8 +11,7 @@ void QuadraticDamping::describe(DescribeEffect& effect) {
   effect.id("residual.quadratic_damping")
       .summary("Drag that grows with the square of the velocity, as in air or oil")
       .doc("c v |v| against the movement.")
-      .acts(Acts::law, {"bearing"})
-      .steps_per_sample(4);
+      .acts(Acts::law, {"bearing"});
 }
 
 std::vector<FitParameter> QuadraticDamping::parameters(const Situation& s) const {

@@ -10,8 +10,7 @@ void QuadraticStiffness::describe(DescribeEffect& effect) {
   effect.id("residual.quadratic_stiffness")
       .summary("The spring is stiffer to one side than to the other")
       .doc("k x^2 is added. A cubic spring around another rest position looks alike, and so does an offset of its sensor.")
-      .acts(Acts::law, {"spring", "coupling"})
-      .steps_per_sample(4);
+      .acts(Acts::law, {"spring", "coupling"});
 }
 
 std::vector<FitParameter> QuadraticStiffness::parameters(const Situation& s) const {

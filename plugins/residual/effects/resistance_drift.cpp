@@ -11,7 +11,6 @@ void ResistanceDrift::describe(DescribeEffect& effect) {
           "The reaction r t i is added, t since the record began. Every record begins anew at the value of the base model: wrong "
           "where the change goes on from record to record.")
       .acts(Acts::law, {"winding"})
-      .steps_per_sample(2)
       .nonstationary();
 }
 

@@ -12,7 +12,6 @@ void ResistanceStep::describe(DescribeEffect& effect) {
           "From an instant on, resistance is added. In every record at the same time since it began: wrong where it happens "
           "once.")
       .acts(Acts::law, {"winding"})
-      .steps_per_sample(2)
       .nonstationary();
 }
 

@@ -10,8 +10,7 @@ void Saturation::describe(DescribeEffect& effect) {
       .doc(
           "In addition to the linear magnetising current flows psi (a psi^2 + b psi^4) / (1 + c psi^4). It can be told from a "
           "measurement how far the inductance falls, hardly what each of the three is. Wrong where iron remembers (hysteresis).")
-      .acts(Acts::law, {"core"})
-      .steps_per_sample(4);
+      .acts(Acts::law, {"core"});
 }
 
 std::vector<FitParameter> Saturation::parameters(const Situation& s) const {

@@ -11,7 +11,6 @@ void StiffnessDrift::describe(DescribeEffect& effect) {
           "The reaction r t x is added, t since the record began. Every record begins anew at the value of the base model: wrong "
           "where the change goes on from record to record.")
       .acts(Acts::law, {"spring"})
-      .steps_per_sample(2)
       .nonstationary();
 }
 

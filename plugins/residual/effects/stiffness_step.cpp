@@ -11,7 +11,6 @@ void StiffnessStep::describe(DescribeEffect& effect) {
       .doc(
           "From an instant on, stiffness is added. In every record at the same time since it began: wrong where it happens once.")
       .acts(Acts::law, {"spring"})
-      .steps_per_sample(2)
       .nonstationary();
 }
 

@@ -18,7 +18,7 @@ void StribeckFriction::describe(DescribeEffect& effect) {
           "B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools and compensation methods for "
           "the control of machines with friction, Automatica 30 (1994) 1083")
       .acts(Acts::law, {"bearing"})
-      .steps_per_sample(8)
+      .steps_per_sample(4)
       .rough();
 }
 

@@ -15,7 +15,7 @@ Laws::Laws(const JointModel& model, const Eigen::VectorXd& values, std::span<con
       const Addition& addition = model.additions[a];
       if (addition.what.acts != Acts::law || addition.place != p) continue;
       active.laws.push_back({addition.effect.get(), model.values_of(a, values), memory_});
-      active.rough = active.rough || addition.what.rough || addition.what.memory > 0;
+      active.rough = active.rough || addition.what.rough;
       memory_ += addition.what.memory;
     }
     if (active.of_base || !active.laws.empty()) places_.push_back(std::move(active));

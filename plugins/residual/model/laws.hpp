@@ -16,7 +16,7 @@ class Laws {
   /// Places with a law, in the order of the base model's places.
   std::size_t count() const { return places_.size(); }
   std::size_t place(std::size_t i) const { return places_[i].place; }
-  /// The law of that place jumps, has corners or keeps a memory.
+  /// The law of that place jumps or has corners.
   bool rough(std::size_t i) const { return places_[i].rough; }
   bool keeps_memory() const { return memory_ > 0; }
   bool any_rough() const;

@@ -14,13 +14,20 @@ struct Answer {
   std::vector<std::string> candidates;  ///< what was in the catalogue
 };
 
-/// Whether the answer is right about a bench that hides that effect ("none": nothing): none for nothing; an effect of the
-/// catalogue named alone, or declared not separable with it among those that can't be told apart; unexplained for one outside of
-/// the catalogue, or its declared equivalent.
-bool is_right(const Answer& answer, const std::string& hidden);
+/// An effect that a bench hides.
+struct HiddenTruth {
+  std::string name;
+  double size = 0.0;
+  std::string unit;
+};
+
+/// Whether the answer is right about a bench that hides these effects: none for nothing; all effects named and no other, each by
+/// its own name or by one that was declared not separable from it; unexplained where one of them, and its declared equivalent,
+/// is outside of the catalogue. "effect at place" counts as the effect.
+bool is_right(const Answer& answer, const std::vector<HiddenTruth>& hidden);
 
 /// The verdict beside the truth in one sentence.
-std::string comparison(const Answer& answer, const std::string& hidden, double size, const std::string& unit);
+std::string comparison(const Answer& answer, const std::vector<HiddenTruth>& hidden);
 
 /// gamma, alpha, Lm_beta, sigma of the T circuit rs, rr [ohm], ls, lr, lm [H].
 Eigen::Vector4d motor_truth(double rs, double rr, double ls, double lr, double lm);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bodeflow/block.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,10 +29,12 @@ class Reveal final : public Block {
     std::vector<double> before, after, after_std;
   };
   struct Truth {
-    std::string effect, unit;
-    double size = 0.0;
+    std::vector<HiddenTruth> hidden;
     std::optional<Eigen::Vector4d> motor;
+    std::map<std::string, double> by_name;  ///< of the base model's parameters
   };
+  std::vector<double> true_values() const;
+
   std::optional<Said> said_;
   std::optional<Truth> truth_;
 };

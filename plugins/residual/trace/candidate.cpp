@@ -169,17 +169,19 @@ Candidate try_effect(const Addition& addition, const Against& against) {
   const Eigen::Index settled = static_cast<Eigen::Index>(model.parameters().size());
   model.additions.push_back(addition);
   FitProblem problem(model, against.bench.fit, settled);
-  const std::vector<std::vector<double>> own = addition.effect->starts(addition.situation);
+  std::vector<std::vector<double>> own = addition.effect->starts(addition.situation);
+  std::vector<Eigen::VectorXd> starts;
+  for (const auto& values : own)
+    starts.push_back(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  c.null = null_distribution(problem, against.before.fit, starts);
+  for (const Eigen::VectorXd& start : c.null.starts) own.emplace_back(start.begin(), start.end());
   const Approach best = search(against, problem, points(against, problem, own));
   if (!best.started) {
     c.reason = "could not be fitted: the model with it can't be computed at any start";
     return c;
   }
-  std::vector<Eigen::VectorXd> starts;
-  for (const auto& values : own)
-    starts.push_back(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
-  c.null = null_distribution(problem, against.before.fit, starts);
   measure(against, fit_at(problem, best), c);
+  c.with.fit.jacobian.resize(0, 0);  // as many as there are candidates: it is formed again where it is needed
   return c;
 }
 

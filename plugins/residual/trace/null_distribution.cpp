@@ -5,6 +5,7 @@
 #include <bodeflow/numerics/chi_squared.hpp>
 #include <bodeflow/numerics/random.hpp>
 #include <cmath>
+#include <optional>
 
 namespace bodeflow::residual {
 namespace {
@@ -14,6 +15,12 @@ constexpr double kNearZero = 1e-5;
 constexpr double kGone = 1e-2;
 constexpr std::size_t kDraws = 2000, kGrid = 24;
 constexpr double kTail = 0.02;
+constexpr std::size_t kKeptStarts = 2;
+// A direction of which less is left beside those of the model is one that the model has already.
+constexpr double kNothingNew = 1e-4;
+// Neighbours on a fine grid share this part of their direction: the largest gain between them is then hardly above theirs.
+constexpr double kAlike = 0.8;
+constexpr std::size_t kFineGrid = 64;
 // Of the amplitude at which the Jacobian of an effect is taken: near 0, yet above rounding.
 constexpr double kSmall = 1e-3;
 constexpr double kPi = 3.14159265358979323846;
@@ -128,35 +135,113 @@ std::vector<Eigen::VectorXd> grid(const std::vector<FitParameter>& own, const st
   return points;
 }
 
-/// Unit vectors of what the effect can do near 0 at each point, at right angles to what the model without it can do: `per_point`
-/// columns a point.
-Eigen::MatrixXd directions(const Beside& beside, const Fit& from, const std::vector<Eigen::Index>& amplitudes,
-                           const std::vector<Eigen::VectorXd>& points) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(from.jacobian);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(from.jacobian.rows(), from.jacobian.cols());
-  const auto per_point = static_cast<Eigen::Index>(amplitudes.size());
-  Eigen::MatrixXd all(from.jacobian.rows(), per_point * static_cast<Eigen::Index>(points.size()));
-  Eigen::Index used = 0;
-  for (Eigen::VectorXd point : points) {
-    for (const Eigen::Index i : amplitudes) point[i] *= kSmall;
-    const Eigen::Index begin = used;
-    bool sound = true;
-    for (std::size_t a = 0; a < amplitudes.size() && sound; ++a) {
-      Eigen::VectorXd single = point;
-      for (const Eigen::Index other : amplitudes)
-        if (other != amplitudes[a]) single[other] *= kNearZero;
-      Eigen::VectorXd d = beside.change(single);
-      sound = d.allFinite() && d.norm() > 0.0;
-      if (!sound) break;
-      d.normalize();
-      d -= q * (q.transpose() * d);
-      d -= all.middleCols(begin, used - begin) * (all.middleCols(begin, used - begin).transpose() * d);
-      sound = d.norm() > 1e-4;  // else the model without the effect can do the same
-      if (sound) all.col(used++) = d.normalized();
-    }
-    if (!sound) used = begin;
+/// What the effect can do near 0 at one point of its other parameters.
+struct Score {
+  Eigen::VectorXd point;
+  Eigen::MatrixXd unit;  ///< orthonormal columns, one an amplitude, at right angles to what the model without it can do; or none
+  double gain = 0.0;     ///< of the residual, linearly
+  std::optional<Eigen::VectorXd> start;  ///< the point with the amplitudes that do it
+};
+
+/// The amplitudes of `point` that a linear fit gives; nothing where none has the right sign.
+std::optional<Eigen::VectorXd> fitted(const Eigen::MatrixXd& columns, const Fit& from, const std::vector<FitParameter>& own,
+                                      const std::vector<Eigen::Index>& amplitudes, Eigen::VectorXd point) {
+  const Eigen::VectorXd factor = columns.colPivHouseholderQr().solve(-from.residual);
+  for (std::size_t a = 0; a < amplitudes.size(); ++a) {
+    const FitParameter& p = own[static_cast<std::size_t>(amplitudes[a])];
+    double& value = point[amplitudes[a]];
+    value *= kSmall * factor[static_cast<Eigen::Index>(a)];
+    if (!std::isfinite(value)) return {};
+    const bool wrong = value < p.low || value > p.high || (p.logarithmic && !(value > 0.0));
+    if (wrong && amplitudes.size() == 1) return {};
+    if (wrong) value = p.logarithmic ? std::abs(point[amplitudes[a]]) : 0.0;
   }
-  return all.leftCols(used);
+  return point;
+}
+
+class Scorer {
+ public:
+  Scorer(const Beside& beside, const Fit& from, const std::vector<FitParameter>& own, const std::vector<Eigen::Index>& amplitudes)
+      : beside_(beside), from_(from), own_(own), amplitudes_(amplitudes) {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(from.jacobian);
+    q_ = qr.householderQ() * Eigen::MatrixXd::Identity(from.jacobian.rows(), from.jacobian.cols());
+  }
+
+  Score at(const Eigen::VectorXd& point) const {
+    const auto count = static_cast<Eigen::Index>(amplitudes_.size());
+    Score s;
+    s.point = point;
+    Eigen::MatrixXd columns(q_.rows(), count), unit(q_.rows(), count);
+    for (Eigen::Index a = 0; a < count; ++a) {
+      Eigen::VectorXd single = point;
+      for (Eigen::Index b = 0; b < count; ++b)
+        single[amplitudes_[static_cast<std::size_t>(b)]] *= a == b ? kSmall : kSmall * kNearZero;
+      Eigen::VectorXd d = beside_.change(single);
+      const double whole = d.norm();
+      if (!d.allFinite() || !(whole > 0.0)) return s;
+      d -= q_ * (q_.transpose() * d);
+      columns.col(a) = d;
+      d -= unit.leftCols(a) * (unit.leftCols(a).transpose() * d);
+      if (!(d.norm() > kNothingNew * whole)) return s;
+      unit.col(a) = d.normalized();
+    }
+    s.gain = (unit.transpose() * from_.residual).squaredNorm();
+    s.start = fitted(columns, from_, own_, amplitudes_, point);
+    s.unit = std::move(unit);
+    return s;
+  }
+
+ private:
+  const Beside& beside_;
+  const Fit& from_;
+  const std::vector<FitParameter>& own_;
+  const std::vector<Eigen::Index>& amplitudes_;
+  Eigen::MatrixXd q_;
+};
+
+/// How much of the one's directions lies in the other's, 0 to 1.
+double alike(const Score& a, const Score& b) {
+  return (a.unit.transpose() * b.unit).norm() / std::sqrt(static_cast<double>(a.unit.cols()));
+}
+
+/// Adds points between those, along the one parameter that is free, until neighbours are alike.
+void refine(const Scorer& scorer, Eigen::Index free, std::vector<Score>& scores) {
+  const auto before = [free](const Score& a, const Score& b) { return a.point[free] < b.point[free]; };
+  std::stable_sort(scores.begin(), scores.end(), before);
+  for (std::size_t n = 0; n + 1 < scores.size() && scores.size() < kFineGrid;) {
+    if (alike(scores[n], scores[n + 1]) > kAlike) {
+      ++n;
+      continue;
+    }
+    const double low = scores[n].point[free], high = scores[n + 1].point[free];
+    const double between = low > 0.0 && high > 4.0 * low ? std::sqrt(low * high) : 0.5 * (low + high);
+    if (!(between > low && between < high)) {
+      ++n;
+      continue;
+    }
+    Eigen::VectorXd point = scores[n].point;
+    point[free] = between;
+    Score s = scorer.at(point);
+    if (s.unit.cols() == 0) {
+      ++n;
+      continue;
+    }
+    scores.insert(scores.begin() + static_cast<std::ptrdiff_t>(n) + 1, std::move(s));
+  }
+}
+
+/// Scores at starts and on a grid, which is finer where only one parameter is free.
+std::vector<Score> scores(const Scorer& scorer, const std::vector<Eigen::VectorXd>& points,
+                          const std::vector<Eigen::Index>& amplitudes) {
+  std::vector<Score> all;
+  for (const Eigen::VectorXd& point : points) {
+    Score s = scorer.at(point);
+    if (s.unit.cols() > 0) all.push_back(std::move(s));
+  }
+  if (all.size() < 2 || static_cast<std::size_t>(points.front().size()) != amplitudes.size() + 1) return all;
+  for (Eigen::Index i = 0; i < points.front().size(); ++i)
+    if (std::find(amplitudes.begin(), amplitudes.end(), i) == amplitudes.end()) refine(scorer, i, all);
+  return all;
 }
 
 /// The largest gain over the points, for each of some draws of the noise.
@@ -233,13 +318,19 @@ Null null_distribution(const FitProblem& problem, const Fit& from, const std::ve
   const std::vector<Eigen::VectorXd> points = grid(effect.parameters, amplitudes, starts);
   const bool own = std::any_of(amplitudes.begin(), amplitudes.end(),
                                [&](Eigen::Index i) { return effect.parameters[static_cast<std::size_t>(i)].each_record; });
-  if (points.size() < 2 || own) {
+  if (own) {
     n.trials = static_cast<double>(points.size());
     return n;
   }
   const auto per_point = static_cast<Eigen::Index>(amplitudes.size());
-  const Eigen::MatrixXd unit = directions(beside, from, amplitudes, points);
-  if (unit.cols() == 0) return n;
+  std::vector<Score> found = scores(Scorer(beside, from, effect.parameters, amplitudes), points, amplitudes);
+  Eigen::MatrixXd unit(problem.rows(), per_point * static_cast<Eigen::Index>(found.size()));
+  for (std::size_t g = 0; g < found.size(); ++g)
+    unit.middleCols(per_point * static_cast<Eigen::Index>(g), per_point) = found[g].unit;
+  std::stable_sort(found.begin(), found.end(), [](const Score& x, const Score& y) { return x.gain > y.gain; });
+  for (const Score& s : found)
+    if (s.start && n.starts.size() < kKeptStarts) n.starts.push_back(*s.start);
+  if (unit.cols() <= per_point) return n;
   n.simulated = largest_gains(unit, per_point, n.one_sided && per_point == 1);
   const double limit = n.simulated[static_cast<std::size_t>((1.0 - kTail) * static_cast<double>(kDraws))];
   n.trials = std::max(std::log1p(-kTail) / std::log1p(-std::min(single(n, limit), 0.999)), 1.0);

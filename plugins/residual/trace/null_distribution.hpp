@@ -15,6 +15,9 @@ struct Null {
   bool tone = false;              ///< trials grow with the square root of the gain, as a frequency is no bin
   std::vector<double> simulated;  ///< gains of simulated nulls, in rising order; empty where one trial is all there is
 
+  /// Values of the effect's parameters where a linear look at the residual finds most, best first.
+  std::vector<Eigen::VectorXd> starts;
+
   /// The probability of so much gain, or more.
   double p(double gain) const;
 };

@@ -128,7 +128,8 @@ class Searcher {
     }
     out_.steps.push_back(std::move(step));
     if (some && out_.found.size() > 1) drop_needless();
-    return some && !out_.explains;
+    // What passes the class tests may hide a further effect; beyond `share` none can add what it would have to.
+    return some && !(floor_known_ && out_.explains && out_.share > out_.levels.share);
   }
 
   /// The model without the effect at `position`, fitted.

@@ -61,7 +61,8 @@ std::string causes(const Trace& t) {
 
 std::string nearest(const Trace& t) {
   const Searched& s = t.searched;
-  if (s.steps.empty() || s.steps.front().candidates.empty()) return "No effect of the catalogue can be tried with this base model.";
+  if (s.steps.empty() || s.steps.front().candidates.empty())
+    return "No effect of the catalogue can be tried with this base model.";
   if (!s.found.empty()) {
     std::vector<std::string> labels;
     for (const Found& f : s.found) labels.push_back(f.addition.label);

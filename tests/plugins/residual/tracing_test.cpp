@@ -77,11 +77,11 @@ double uniformity(std::vector<double> p) {
 }  // namespace
 
 TEST_CASE("tracing: one effect is named with its size, and the error falls to the noise") {
-  const Trace t = traced([](double n, double l) { return 0.8 * wave(n, l); }, 1);
+  const Trace t = traced([](double n, double l) { return 1.6 * wave(n, l); }, 1);
   REQUIRE(t.verdict == Verdict::named);
   REQUIRE(names(t) == std::vector<std::string>{"ripple"});
   const Candidate& c = t.searched.steps.front().candidates.front();
-  CHECK(std::abs(c.values()[0] - 0.8) < 4.0 * c.std()[0]);
+  CHECK(std::abs(c.values()[0] - 1.6) < 4.0 * c.std()[0]);
   CHECK(c.std()[0] == Approx(std::sqrt(2.0 / 600.0)).epsilon(0.05));  // a sinusoid over 600 rows
   CHECK(t.before.error > t.before.highest);
   CHECK(t.after.at_floor());
@@ -100,13 +100,13 @@ TEST_CASE("tracing: where nothing is missing nothing is named") {
 TEST_CASE("tracing: two and three effects together are all found, in any order") {
   CHECK(names(traced([](double n, double l) { return 0.8 * wave(n, l) + 0.6; }, 3)) ==
         std::vector<std::string>{"offset", "ripple"});
-  CHECK(names(traced([](double n, double l) { return 0.8 * wave(n, l) + 1.5 * line(n, l) + 0.9 * cubic(n, l); }, 4)) ==
+  CHECK(names(traced([](double n, double l) { return 1.6 * wave(n, l) + 3.0 * line(n, l) + 2.5 * cubic(n, l); }, 4)) ==
         std::vector<std::string>{"cubic", "ripple", "trend"});
 }
 
 TEST_CASE("tracing: an offset and a trend that hide each other are told apart") {
   // Their shapes share three quarters of their power: each alone explains a great part of both.
-  const Trace t = traced([](double n, double l) { return 0.7 + 1.2 * line(n, l); }, 5);
+  const Trace t = traced([](double n, double l) { return 1.4 + 2.4 * line(n, l); }, 5);
   CHECK(t.verdict == Verdict::named);
   CHECK(names(t) == std::vector<std::string>{"offset", "trend"});
 }

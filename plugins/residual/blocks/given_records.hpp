@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "records/recording.hpp"
+#include "records/response.hpp"
+#include "trace/trace.hpp"
+
+namespace bodeflow::residual {
+
+/// A record as it arrived.
+using Given = std::variant<records::Recording, records::ResponseData>;
+
+/// Records with what each is for.
+struct GivenRecords {
+  std::vector<Given> fit;
+  std::optional<Given> select, test;
+  std::vector<std::string> notes;  ///< how records were split, in sentences
+};
+
+/// How recordings are looked at.
+enum class Engine { automatic, periodic, sampled };
+/// Which it is for these records: periodic where all repeat a period two times or more.
+Engine engine_for(const GivenRecords& records, Engine wished);
+
+/// The records with `select` and `test`, taken from those at `fit` where they are absent: whole records from the end of the list
+/// while two at least remain, else parts of the last one (whole periods of a periodic one, a quarter of another one each, every
+/// fourth line of a response). Errors: a record too short to be split, with how much it would need.
+Expected<GivenRecords> with_all_parts(GivenRecords records, Engine engine);
+
+/// The records as measurements, "fit 1", "fit 2" ..., "select", "test". `known`: "record: name=value unit". Throws Failure for a
+/// statement that is wrong. Errors: those of the measurements, with the record's name.
+Expected<TraceData> measurements_of(const GivenRecords& records, Engine engine, const BaseModel& base,
+                                    const std::vector<std::string>& known);
+
+}  // namespace bodeflow::residual

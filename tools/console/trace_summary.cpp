@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "console/columns.hpp"
 #include "console/console.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr std::size_t kScreen = 110;  ///< characters of a line
 constexpr int kName = 28;
+constexpr std::size_t kCandidates = 6;       ///< shown of the first step
+constexpr std::size_t kLaterCandidates = 3;  ///< of each further one
 
 /// Prints words up to the end of the screen, further lines indented alike.
 void print_wrapped(const std::string& text, std::size_t indent) {
@@ -44,12 +47,29 @@ void print_records(const Json& record) {
       2);
 }
 
+/// "dead_time and offset": what was added to the model.
+std::string added(const Json& record) {
+  const Json& effects = attribute(record, "effects");
+  std::string all;
+  if (effects.is_array())
+    for (std::size_t i = 0; i < effects.size(); ++i) all += (i == 0 ? "" : " and ") + text_at(effects, i);
+  return all;
+}
+
+/// One row a model: its error on a record that was not fitted, what noise alone leaves there, and what is not noise.
 void print_errors(const Json& record) {
-  fmt::print("  {}\n", dim(fmt::format("{:<{}} {:>12} {:>12} {:>12} {:>12}", "error", kName, "before", "after", "noise alone",
-                                       "99.9 % below")));
-  fmt::print("  {:<{}} {} {} {} {}\n", named("on the test record", text(attribute(record, "unit"))), kName,
-             cell(number(attribute(record, "error_before"))), cell(number(attribute(record, "error_after"))),
-             cell(number(attribute(record, "noise_floor"))), cell(number(attribute(record, "noise_floor_99.9"))));
+  fmt::print("  {}\n", dim(fmt::format("{:<{}} {:>12} {:>12} {:>12}", named("error", text(attribute(record, "unit"))), kName,
+                                       "all of it", "noise alone", "not noise")));
+  const auto row = [&](const std::string& name, const char* error, const char* floor, const char* excess) {
+    const double value = number(attribute(record, error));
+    if (std::isnan(value)) return;
+    fmt::print("  {:<{}} {} {} {}\n", name, kName, cell(value), cell(number(attribute(record, floor))),
+               cell(number(attribute(record, excess)), 12, 3));
+  };
+  const std::string effects = added(record);
+  row("the model as declared", "error_before", "noise_floor", "excess_before");
+  if (!effects.empty()) row("with " + effects, "error_after", "noise_floor", "excess_after");
+  row("measured with the remedy", "error_remedied", "noise_floor_remedied", "excess_remedied");
 }
 
 void print_parameters(const Json& record) {
@@ -89,13 +109,27 @@ void print_classes(const Json& record) {
   fmt::print("  {}\n  {:<{}}{}\n  {:<{}}{}\n", dim(head), name + ", before", kName, first, name + ", after", kName, second);
 }
 
+/// The best candidates of each step; of the others how many there are.
 void print_candidates(const Json& record) {
-  const Json &names = attribute(record, "candidate_names"), &reasons = attribute(record, "candidate_reasons");
+  const Json &names = attribute(record, "candidate_names"), &reasons = attribute(record, "candidate_reasons"),
+             &steps = attribute(record, "candidate_steps");
   const Values share = values(record, "candidate_share");
   if (!names.is_array()) return;
   fmt::print("  {}\n", dim(fmt::format("{:<{}} {}", "candidate", kName, "explains")));
-  for (std::size_t i = 0; i < names.size(); ++i)
+  std::size_t of_step = 0, left_out = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto step = [&](std::size_t n) { return steps.is_array() && n < steps.size() ? number(steps[n]) : 1.0; };
+    if (i > 0 && step(i) != step(i - 1)) {
+      of_step = 0;
+      fmt::print("  {}\n", dim("beside what was found before"));
+    }
+    if (of_step++ >= (step(i) > 1.0 ? kLaterCandidates : kCandidates)) {
+      ++left_out;
+      continue;
+    }
     fmt::print("  {:<{}} {:>5.1f} %  {}\n", text_at(names, i), kName, 100.0 * share.at(i), text_at(reasons, i));
+  }
+  if (left_out > 0) fmt::print("  {}\n", dim(fmt::format("and {} more, with their reasons, in the report", left_out)));
 }
 
 }  // namespace
@@ -103,6 +137,11 @@ void print_candidates(const Json& record) {
 bool print_trace(const Json& record) {
   const std::string finding = text(attribute(record, "finding"));
   if (finding.empty()) return false;
+  if (const std::string remedy = text(attribute(record, "remedy")); !remedy.empty()) {
+    print_wrapped(remedy + " " + text(attribute(record, "sentence_remedied")), 2);
+    print_errors(record);
+    return true;
+  }
   print_records(record);
   fmt::print("\n");
   print_wrapped(finding, 2);

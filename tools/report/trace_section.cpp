@@ -3,43 +3,61 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/curve.hpp"
 #include "report/numbers.hpp"
 #include "report/sections.hpp"
+#include "report/trace_charts.hpp"
 
 namespace bodeflow::tools::report {
 namespace {
 
-struct Bar {
-  std::string name;
-  double value;
-  int colour;
-};
+/// Attributes that have a place of their own on the page.
+const std::vector<std::string> kShown{"verdict",
+                                      "finding",
+                                      "conventions",
+                                      "effects",
+                                      "effect_places",
+                                      "effect_labels",
+                                      "effect_equivalents",
+                                      "equivalents",
+                                      "effect_parameter_counts",
+                                      "error_before",
+                                      "error_after",
+                                      "error_remedied",
+                                      "noise_floor",
+                                      "noise_floor_99.9",
+                                      "excess_before",
+                                      "excess_after",
+                                      "warnings",
+                                      "parameter_names",
+                                      "parameter_units",
+                                      "effect_parameter_names",
+                                      "effect_parameter_units",
+                                      "class_names",
+                                      "class_records",
+                                      "class_p_limit",
+                                      "candidate_names",
+                                      "candidate_effects",
+                                      "candidate_reasons",
+                                      "candidate_steps",
+                                      "candidate_p_limit",
+                                      "candidate_p_limits",
+                                      "candidate_select_limit",
+                                      "not_tried",
+                                      "not_tried_reasons",
+                                      "records",
+                                      "record_checksums",
+                                      "record_samples",
+                                      "record_notes",
+                                      "observations",
+                                      "advice",
+                                      "remarks",
+                                      "unit",
+                                      "partial_effects"};
 
-/// Horizontal bars with their values, from zero.
-Picture draw_bars(const std::string& title, const std::vector<Bar>& bars, const std::string& unit, double width) {
-  constexpr double kRow = 34.0;
-  Picture picture{title, "Bars: ", width, 0.0, {}};
-  double greatest = 0.0, names = 0.0;
-  for (const auto& bar : bars) {
-    greatest = std::max(greatest, bar.value);
-    names = std::max(names, text_width(bar.name));
-    picture.description += fmt::format("{} {}; ", bar.name, shown(bar.value, unit));
-  }
-  const double left = names + 20.0, inner = width - left - 120.0;
-  for (std::size_t n = 0; n < bars.size(); ++n) {
-    const double y = 8.0 + kRow * static_cast<double>(n);
-    const double length = greatest > 0.0 ? inner * bars[n].value / greatest : 0.0;
-    draw_text(picture.body, left - 10.0, y + 16.0, bars[n].name, Anchor::end);
-    picture.body.single("rect", {{"x", left},
-                                 {"y", y},
-                                 {"width", std::max(length, 1.0)},
-                                 {"height", 24.0},
-                                 {"class", fmt::format("m{}", bars[n].colour)}});
-    draw_text(picture.body, left + length + 8.0, y + 16.0, shown(bars[n].value, unit), Anchor::start, "b");
-  }
-  picture.height = 8.0 + kRow * static_cast<double>(bars.size());
-  return picture;
+std::string joined(const std::vector<std::string>& words, const char* between) {
+  std::string text;
+  for (const std::string& w : words) text += (text.empty() ? "" : between) + w;
+  return text;
 }
 
 std::string verdict_text(const std::string& verdict) {
@@ -80,9 +98,10 @@ void add_effects(Page& page, const Record& record) {
   const Array* values = record.array("effect_parameters");
   if (values == nullptr || values->is_complex()) return;
   const Array* deviations = record.array("effect_parameter_std", values->shape);
-  std::string effects;
-  for (const auto& name : record.texts("effects")) effects += (effects.empty() ? "" : " and ") + name;
-  Table table{"Added: " + effects, {{"Parameter", false}, {"Value"}, {"std"}}, {}};
+  const auto labels = record.texts("effect_labels");
+  Table table{"Added: " + joined(labels.empty() ? record.texts("effects") : labels, " and "),
+              {{"Parameter", false}, {"Value"}, {"std"}},
+              {}};
   for (std::size_t n = 0; n < values->size(); ++n) {
     const std::string unit = record.text_at("effect_parameter_units", n, values->unit);
     table.rows.push_back({with_unit(record.text_at("effect_parameter_names", n, fmt::format("parameter {}", n + 1)), unit),
@@ -146,8 +165,12 @@ void add_candidates(Page& page, const Record& record) {
   const Array *fit = record.array("candidate_fit_gain", shape), *p = record.array("candidate_p", shape),
               *select = record.array("candidate_select_gain", shape), *share = record.array("candidate_share", shape);
   if (names.empty() || fit == nullptr || p == nullptr || select == nullptr || share == nullptr) return;
+  std::vector<double> steps;
+  if (const auto found = record.attributes.find("candidate_steps"); found != record.attributes.end() && found->is_array())
+    for (const auto& step : *found) steps.push_back(step.is_number() ? step.get<double>() : kNaN);
   Table table{"Candidates, best first",
               {{"Effect", false},
+               {"Step"},
                {"Fall of χ², fitted records"},
                {"p"},
                {"Fall of χ², selecting record"},
@@ -155,58 +178,91 @@ void add_candidates(Page& page, const Record& record) {
                {"Why, or why not", false}},
               {}};
   for (std::size_t n = 0; n < names.size(); ++n) {
-    table.rows.push_back({names[n], shown(fit->re[n], 4), shown(p->re[n], 2), shown(select->re[n], 4), percent(share->re[n]),
-                          record.text_at("candidate_reasons", n, "")});
+    const double step = n < steps.size() ? steps[n] : 1.0;
+    table.rows.push_back({names[n], shown(step), shown(fit->re[n], 4), shown(p->re[n], 2), shown(select->re[n], 4),
+                          percent(share->re[n]), record.text_at("candidate_reasons", n, "")});
   }
   add_table(page.body(), table);
 }
 
-Series spectrum(const Array& frequency, const Array& level, const Array* kind, std::int64_t wanted, std::string name,
-                int colour) {
-  Series series;
-  series.name = std::move(name);
-  series.colour = colour;
-  series.markers = kind != nullptr;
-  series.line = kind == nullptr;
-  for (std::size_t k = 1; k < frequency.size(); ++k) {
-    const bool excited = kind != nullptr && kind->re[k] == 1.0;
-    if (kind != nullptr && excited != (wanted == 1)) continue;
-    series.x.push_back(frequency.re[k]);
-    series.y.push_back(level.re[k] > 0.0 ? level.re[k] : kNaN);
+/// What the model leaves on records that were not fitted, in the unit of the output and in multiples of the noise.
+void add_error_table(Page& page, const Record& record) {
+  struct Row {
+    std::string name;
+    const char *error, *floor, *excess;
+  };
+  std::vector<Row> rows{{"model as declared, test record", "error_before", "noise_floor", "excess_before"}};
+  if (!record.texts("effects").empty())
+    rows.push_back(
+        {"with " + joined(record.texts("effects"), " and ") + ", test record", "error_after", "noise_floor", "excess_after"});
+  rows.push_back({"without it, measured with the remedy", "error_remedied", "noise_floor_remedied", "excess_remedied"});
+  const std::string unit = record.text("unit");
+  Table table{"Error on data not used for fitting",
+              {{"Model", false},
+               {with_unit("Error", unit)},
+               {with_unit("Noise alone", unit)},
+               {"Error / noise"},
+               {with_unit("Not noise", unit)}},
+              {}};
+  for (const Row& row : rows) {
+    const double error = record.number(row.error), floor = record.number(row.floor);
+    if (!std::isfinite(error)) continue;
+    table.rows.push_back({row.name, shown(error), shown(floor), shown(error / floor, 3), shown(record.number(row.excess), 3)});
   }
-  return series;
+  if (table.rows.empty() || !std::isfinite(record.number("excess_before"))) return;
+  add_table(page.body(), table);
+  page.paragraph("Root mean squares. What is not noise is the root of the difference of the squares of error and noise.");
 }
 
-/// The residual of the test record over frequency, before and after, with the noise.
-void add_spectrum(Page& page, const Record& record) {
-  const Array* frequency = record.array("frequency");
-  if (frequency == nullptr || frequency->is_complex() || frequency->size() < 2) return;
-  const Array *before = record.array("residual_before", frequency->shape),
-              *after = record.array("residual_after", frequency->shape),
-              *noise = record.array("residual_noise", frequency->shape), *kind = record.array("kind", frequency->shape);
-  if (before == nullptr || after == nullptr || noise == nullptr || kind == nullptr) return;
-  Chart chart;
-  chart.name = record.key + "_residual";
-  chart.title = "Residual on the test record";
-  chart.description = "Root mean square of measured minus predicted output over frequency, before and after, with the noise.";
-  chart.x_title = "Frequency [Hz]";
-  chart.x_logarithmic = true;
-  struct Part {
-    const Array* level;
-    const char* name;
-    int colour;
-  };
-  for (const std::int64_t excited : {1, 0}) {
-    Panel panel;
-    panel.y = {Scale::logarithmic, 0, 1, {}, {}, with_unit(excited == 1 ? "Excited lines" : "Other lines", before->unit)};
-    panel.height = 230.0;
-    for (const Part& part : {Part{before, "before", 1}, Part{after, "after", 0}})
-      panel.series.push_back(
-          thinned(spectrum(*frequency, *part.level, kind, excited, excited == 1 ? part.name : "", part.colour), true));
-    panel.series.push_back(thinned(spectrum(*frequency, *noise, nullptr, 0, excited == 1 ? "noise" : "", 5), true));
-    chart.panels.push_back(std::move(panel));
+/// What can't be told from what was named, and what would tell it; what the experiment could not say.
+void add_equivalents(Page& page, const Record& record) {
+  const auto effects = record.texts("effects"), others = record.texts("effect_equivalents");
+  for (std::size_t e = 0; e < effects.size() && e < others.size(); ++e)
+    if (!others[e].empty()) page.note(effects[e] + " can't be told from " + others[e] + " with these data.");
+  for (const char* list : {"advice", "remarks"})
+    for (const std::string& text : record.texts(list)) page.note(text);
+}
+
+void add_not_tried(Page& page, const Record& record) {
+  const auto names = record.texts("not_tried");
+  if (names.empty()) return;
+  open_details(page.body(), fmt::format("{} effects of the catalogue could not be tried", names.size()));
+  Table table{"", {{"Effect", false}, {"Why not", false}}, {}};
+  for (std::size_t n = 0; n < names.size(); ++n) table.rows.push_back({names[n], record.text_at("not_tried_reasons", n, "")});
+  add_table(page.body(), table);
+  close_details(page.body());
+}
+
+/// What each record was used for, with what identifies it.
+void add_records(Page& page, const Record& record) {
+  const auto names = record.texts("records");
+  const std::vector<std::uint64_t> shape{names.size()};
+  const Array* levels = record.array("record_levels", shape);
+  if (names.empty()) return;
+  Table table{"Records",
+              {{"Record", false},
+               {"Used for", false},
+               {with_unit("Input, rms", levels == nullptr ? "" : levels->unit)},
+               {"Checksum", false}},
+              {}};
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const std::string use = names[n].rfind("fit", 0) == 0 ? "fitted"
+                            : names[n] == "select"        ? "ranks the candidates"
+                                                          : "the errors told here";
+    table.rows.push_back({names[n], use, levels == nullptr ? "–" : shown(levels->re[n]),
+                          record.text_at("record_checksums", n, "–").substr(0, 16)});
   }
-  page.figure(chart, "A right model leaves the noise: its lines scatter around the noise's root mean square.");
+  add_table(page.body(), table);
+  for (const char* list : {"record_notes", "observations"})
+    for (const std::string& text : record.texts(list)) page.paragraph(text);
+}
+
+/// A trace whose effects were remedied: what was switched on, the three errors, the residual.
+bool add_remedied(Page& page, const Record& record) {
+  page.body().open("p").element("b", record.text("remedy") + " " + record.text("sentence_remedied")).close("p");
+  add_error_table(page, record);
+  add_remedied_residual(page, record);
+  return true;
 }
 
 }  // namespace
@@ -214,36 +270,20 @@ void add_spectrum(Page& page, const Record& record) {
 bool add_trace(Page& page, const Record& record) {
   const std::string verdict = record.text("verdict"), finding = record.text("finding");
   if (verdict.empty()) return false;
+  if (!record.text("remedy").empty()) return add_remedied(page, record);
   page.body().open("p").element("b", finding.empty() ? verdict_text(verdict) : finding).close("p");
+  add_equivalents(page, record);
   add_errors(page, record);
+  add_error_table(page, record);
   add_effects(page, record);
   add_parameters(page, record);
   add_classes(page, record);
+  add_trace_residual(page, record);
   add_candidates(page, record);
-  add_spectrum(page, record);
+  add_not_tried(page, record);
+  add_records(page, record);
   for (const auto& declared : record.texts("conventions")) page.paragraph("Declared: " + declared + ".");
-  add_attributes(page, record,
-                 {"verdict",
-                  "finding",
-                  "conventions",
-                  "effects",
-                  "error_before",
-                  "error_after",
-                  "error_remedied",
-                  "noise_floor",
-                  "noise_floor_99.9",
-                  "warnings",
-                  "parameter_names",
-                  "parameter_units",
-                  "effect_parameter_names",
-                  "effect_parameter_units",
-                  "class_names",
-                  "class_records",
-                  "class_p_limit",
-                  "candidate_names",
-                  "candidate_reasons",
-                  "candidate_p_limit",
-                  "candidate_select_limit"});
+  add_attributes(page, record, kShown);
   return true;
 }
 

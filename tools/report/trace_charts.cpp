@@ -1,0 +1,191 @@
+#include "report/trace_charts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/curve.hpp"
+#include "report/numbers.hpp"
+
+namespace bodeflow::tools::report {
+namespace {
+
+constexpr double kThreeSigma = 3.0;
+
+/// Classes of lines as their numbers stand in `kind`.
+struct LineClass {
+  double kind;
+  const char* title;
+};
+constexpr LineClass kClasses[] = {{1.0, "Excited lines"}, {2.0, "Odd lines"}, {3.0, "Even lines"}};
+
+/// The lines of one class, or all where there are no classes; zero frequency has no place on the axis.
+Series lines_of(const Array& frequency, const Array& level, const Array* kind, double wanted, std::string name, int colour) {
+  Series series;
+  series.name = std::move(name);
+  series.colour = colour;
+  series.markers = kind != nullptr;
+  series.line = kind == nullptr;
+  for (std::size_t k = 0; k < frequency.size(); ++k) {
+    if (!(frequency.re[k] > 0.0) || (kind != nullptr && kind->re[k] != wanted)) continue;
+    series.x.push_back(frequency.re[k]);
+    series.y.push_back(level.re[k] > 0.0 ? level.re[k] : kNaN);
+  }
+  return series;
+}
+
+Array scaled(Array a, double factor) {
+  for (double& value : a.re) value *= factor;
+  return a;
+}
+
+Panel panel_of(const std::string& title, Scale scale) {
+  Panel panel;
+  panel.y = {scale, 0, 1, {}, {}, title};
+  return panel;
+}
+
+Chart frequency_chart(const Record& record, const std::string& name, const std::string& title) {
+  Chart chart;
+  chart.name = record.key + name;
+  chart.title = title;
+  chart.description = "Root mean square of measured minus predicted output over frequency, with the noise.";
+  chart.x_title = "Frequency [Hz]";
+  chart.x_logarithmic = true;
+  return chart;
+}
+
+/// Whether noise of that shape is there and known somewhere.
+bool known(const Array* noise) {
+  return noise != nullptr && std::any_of(noise->re.begin(), noise->re.end(), [](double v) { return std::isfinite(v); });
+}
+
+void add_noise(Panel& panel, const Array& frequency, const Array& noise, bool named) {
+  Series level = lines_of(frequency, noise, nullptr, 0, named ? "noise" : "", 5);
+  Series high = lines_of(frequency, scaled(noise, kThreeSigma), nullptr, 0, named ? "three times the noise" : "", 4);
+  panel.series.push_back(thinned(level, true));
+  panel.series.push_back(thinned(high, true));
+}
+
+void add_over_frequency(Page& page, const Record& record, const Array& frequency) {
+  const Array *before = record.array("residual_before", frequency.shape),
+              *after = record.array("residual_after", frequency.shape), *noise = record.array("residual_noise", frequency.shape),
+              *kind = record.array("kind", frequency.shape);
+  if (before == nullptr || after == nullptr || !known(noise)) return;
+  Chart chart = frequency_chart(record, "_residual", "Residual on the test record");
+  const bool added = !record.texts("effects").empty();
+  bool first = true;
+  for (const LineClass& c : kClasses) {
+    if (kind != nullptr && std::find(kind->re.begin(), kind->re.end(), c.kind) == kind->re.end()) continue;
+    Panel panel = panel_of(with_unit(kind == nullptr ? "Lines" : c.title, before->unit), Scale::logarithmic);
+    panel.height = 190.0;
+    panel.series.push_back(thinned(lines_of(frequency, *before, kind, c.kind, first ? "before" : "", 1), true));
+    if (added) panel.series.push_back(thinned(lines_of(frequency, *after, kind, c.kind, first ? "after" : "", 0), true));
+    add_noise(panel, frequency, *noise, first);
+    chart.panels.push_back(std::move(panel));
+    first = false;
+    if (kind == nullptr) break;
+  }
+  if (chart.panels.empty()) return;
+  page.figure(
+      chart,
+      "A right model leaves the noise: its lines scatter around the noise's root mean square, and one in 8,000 stands above "
+      "three times it.");
+}
+
+void add_over_time(Page& page, const Record& record, const Array& time) {
+  const Array *measured = record.array("measured", time.shape), *before = record.array("residual_before", time.shape),
+              *after = record.array("residual_after", time.shape);
+  if (before == nullptr || after == nullptr) return;
+  Chart chart;
+  chart.name = record.key + "_residual";
+  chart.title = "Residual on the test record";
+  chart.description = "Measured output and measured minus predicted output over time, before and after.";
+  chart.x_title = "Time [s]";
+  const auto course = [&](const Array& values, const char* name, int colour) {
+    Series series;
+    series.name = name;
+    series.colour = colour;
+    series.x = time.re;
+    series.y = values.re;
+    return thinned(series, false);
+  };
+  if (measured != nullptr) {
+    Panel panel = panel_of(with_unit("Measured", measured->unit), Scale::linear);
+    panel.height = 150.0;
+    panel.series.push_back(course(*measured, "", 5));
+    chart.panels.push_back(std::move(panel));
+  }
+  Panel panel = panel_of(with_unit("Residual", before->unit), Scale::linear);
+  panel.series.push_back(course(*before, "before", 1));
+  if (!record.texts("effects").empty()) panel.series.push_back(course(*after, "after", 0));
+  chart.panels.push_back(std::move(panel));
+  page.figure(chart, "Measured minus predicted. Where the noise is not known, nobody can say how small it could be.");
+}
+
+/// The array of that name over an axis.
+const Array* axis_of(const Record& record, const char* name) {
+  const Array* const axis = record.array(name);
+  return axis == nullptr || axis->is_complex() || axis->shape.size() != 1 || axis->size() < 2 ? nullptr : axis;
+}
+
+}  // namespace
+
+Picture draw_bars(const std::string& title, const std::vector<Bar>& bars, const std::string& unit, double width) {
+  constexpr double kRow = 34.0;
+  Picture picture{title, "Bars: ", width, 0.0, {}};
+  double greatest = 0.0, names = 0.0;
+  for (const auto& bar : bars) {
+    greatest = std::max(greatest, bar.value);
+    names = std::max(names, text_width(bar.name));
+    picture.description += fmt::format("{} {}; ", bar.name, shown(bar.value, unit));
+  }
+  const double left = names + 20.0, inner = width - left - 120.0;
+  for (std::size_t n = 0; n < bars.size(); ++n) {
+    const double y = 8.0 + kRow * static_cast<double>(n);
+    const double length = greatest > 0.0 ? inner * bars[n].value / greatest : 0.0;
+    draw_text(picture.body, left - 10.0, y + 16.0, bars[n].name, Anchor::end);
+    picture.body.single("rect", {{"x", left},
+                                 {"y", y},
+                                 {"width", std::max(length, 1.0)},
+                                 {"height", 24.0},
+                                 {"class", fmt::format("m{}", bars[n].colour)}});
+    draw_text(picture.body, left + length + 8.0, y + 16.0, shown(bars[n].value, unit), Anchor::start, "b");
+  }
+  picture.height = 8.0 + kRow * static_cast<double>(bars.size());
+  return picture;
+}
+
+void add_trace_residual(Page& page, const Record& record) {
+  if (const Array* const frequency = axis_of(record, "frequency"); frequency != nullptr) {
+    add_over_frequency(page, record, *frequency);
+  } else if (const Array* const time = axis_of(record, "time"); time != nullptr) {
+    add_over_time(page, record, *time);
+  }
+}
+
+void add_remedied_residual(Page& page, const Record& record) {
+  const Array *frequency = axis_of(record, "frequency"), *again = axis_of(record, "remedied_at");
+  if (frequency == nullptr || again == nullptr) return;
+  const Array *before = record.array("residual_before", frequency->shape),
+              *noise = record.array("residual_noise", frequency->shape),
+              *remedied = record.array("residual_remedied", again->shape);
+  if (before == nullptr || !known(noise) || remedied == nullptr) return;
+  Chart chart = frequency_chart(record, "_remedied", "Residual of the model without the effect");
+  Panel panel = panel_of(with_unit("All lines", before->unit), Scale::logarithmic);
+  panel.height = 230.0;
+  const auto marked = [&](const Array& at, const Array& level, const char* name, int colour) {
+    Series series = lines_of(at, level, nullptr, 0, name, colour);
+    series.markers = true;
+    series.line = false;
+    return thinned(series, true);
+  };
+  panel.series.push_back(marked(*frequency, *before, "before", 1));
+  panel.series.push_back(marked(*again, *remedied, "with the remedy", 2));
+  add_noise(panel, *frequency, *noise, true);
+  chart.panels.push_back(std::move(panel));
+  page.figure(chart, "Nothing was fitted to the record with the remedy.");
+}
+
+}  // namespace bodeflow::tools::report

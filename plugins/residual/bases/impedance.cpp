@@ -1,6 +1,7 @@
 #include "impedance.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "declared_timing.hpp"
 #include "impedance_start.hpp"
@@ -50,7 +51,9 @@ void Impedance::configure(const Parameters& p) {
 
 std::vector<FitParameter> Impedance::parameters() const {
   std::vector<FitParameter> all = {positive("resistance", "ohm").says("of the coil, at direct current"),
-                                   positive("inductance", "H").says("of the coil")};
+                                   real("inductance", "H", 1e-3)
+                                       .between(0.0, std::numeric_limits<double>::infinity())
+                                       .says("of the coil; it may vanish beside what effects add")};
   if (!motion_) return all;
   if (!force_factor_) all.push_back(positive("force_factor", "N/A").says("Bl, force for a unit of current"));
   all.push_back(positive("mass", "kg").says("that moves, with the air that moves along, without added_mass"));
@@ -79,7 +82,7 @@ std::vector<std::string> Impedance::conventions() const {
 }
 
 Impedance::Values Impedance::values_of(const double* v, const double* known) const {
-  Values x{v[0], v[1], 0.0, 1.0, 1.0, 1.0};
+  Values x{v[0], std::max(v[1], 0.0), 0.0, 1.0, 1.0, 1.0};
   if (!motion_) return x;
   const double* next = v + 2;
   x.force_factor = force_factor_ ? *force_factor_ : *next++;
@@ -90,9 +93,9 @@ Impedance::Values Impedance::values_of(const double* v, const double* known) con
 }
 
 bool Impedance::valid(const Values& x) const {
-  for (const double value : {x.resistance, x.inductance, x.mass, x.mechanical_resistance, x.stiffness})
+  for (const double value : {x.resistance, x.mass, x.mechanical_resistance, x.stiffness})
     if (!(value > 0.0) || !std::isfinite(value)) return false;
-  return std::isfinite(x.force_factor);
+  return std::isfinite(x.inductance) && std::isfinite(x.force_factor);
 }
 
 std::vector<std::vector<double>> Impedance::starts(std::span<const MeasuredResponse> measured) const {
@@ -112,7 +115,7 @@ std::vector<std::vector<double>> Impedance::starts(std::span<const MeasuredRespo
 
 bool Impedance::state_space(const double* v, const double* known, LinearPlant& plant) const {
   const Values x = values_of(v, known);
-  if (!admittance_ || !valid(x)) return false;
+  if (!admittance_ || !valid(x) || !(x.inductance > 0.0)) return false;
   const double per_l = 1.0 / x.inductance, per_m = 1.0 / x.mass;
   if (!motion_) {
     plant.resize(1, 1, 2);

@@ -97,6 +97,8 @@ void drop_first_line(ResponseData& r) {
   r.response = r.response.bottomRows(rest).eval();
   if (r.variance.size() != 0) r.variance = r.variance.bottomRows(rest).eval();
   if (!r.lines.empty()) r.lines.erase(r.lines.begin());
+  r.confidence_radius.resize(0, 0);
+  r.spectra.reset();
 }
 
 }  // namespace

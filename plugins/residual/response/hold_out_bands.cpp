@@ -1,7 +1,8 @@
 #include "hold_out_bands.hpp"
 
-#include <algorithm>
 #include <cmath>
+
+#include "records/signals.hpp"
 
 namespace bodeflow::residual {
 namespace {
@@ -21,23 +22,20 @@ records::ResponseData lines_of(const records::ResponseData& all, const std::vect
 
 }  // namespace
 
-Expected<HeldOutBands> hold_out_bands(const records::ResponseData& r, int bands, int every) {
+Expected<HeldOutBands> hold_out_bands(const records::ResponseData& r, double octaves, int every) {
+  if (!(octaves > 0.0)) return refused("octaves = " + records::short_number(octaves) + "; allowed: above 0");
   if (every < 2) return refused("every = " + std::to_string(every) + "; allowed: 2 and more");
-  if (bands < 2) return refused("bands = " + std::to_string(bands) + "; allowed: 2 and more");
-  const Eigen::Index lines = r.frequency_hz.size();
-  Eigen::Index first = 0;
-  while (first < lines && !(r.frequency_hz[first] > 0.0)) ++first;
-  if (lines - first < 2) return refused("a response of " + std::to_string(lines) + " lines has no bands");
-  const double start = std::log(r.frequency_hz[first]), width = std::log(r.frequency_hz[lines - 1]) - start;
+  double start = 0.0;
   std::vector<Eigen::Index> kept, held_out;
-  for (Eigen::Index k = 0; k < lines; ++k) {
-    const double place = k < first ? 0.0 : (std::log(r.frequency_hz[k]) - start) / width;
-    const int band = std::min(static_cast<int>(place * bands), bands - 1);
-    (k >= first && band % every == every / 2 ? held_out : kept).push_back(k);
+  for (Eigen::Index k = 0; k < r.frequency_hz.size(); ++k) {
+    const double f = r.frequency_hz[k];
+    if (!(start > 0.0)) start = f;
+    const double band = f > 0.0 ? std::floor(std::log2(f / start) / octaves) : 0.0;
+    (std::fmod(band, every) == static_cast<double>(every / 2) ? held_out : kept).push_back(k);  // NOLINT: whole numbers
   }
   if (held_out.empty() || kept.empty())
-    return refused(std::to_string(bands) + " bands of which every " + std::to_string(every) +
-                   "th is held out leave a part without lines");
+    return refused("its " + records::counted(r.frequency_hz.size(), "line") + " are too near to each other for bands of " +
+                   records::short_number(octaves) + " octaves of which every " + std::to_string(every) + "th is held out");
   return HeldOutBands{lines_of(r, kept), lines_of(r, held_out)};
 }
 

@@ -11,10 +11,9 @@ struct HeldOutBands {
   records::ResponseData held_out;
 };
 
-/// Every `every`-th band of `bands` goes to `held_out`, the first after every / 2 others, so that both ends are kept; the bands
-/// are equally wide in the logarithm of the frequency. Neighbouring lines of a measured response err alike: single lines left out
-/// would test nothing that their neighbours have not fitted. Lines at 0 Hz are kept. Errors, by name: every < 2, fewer than two
-/// bands, a part without lines.
-Expected<HeldOutBands> hold_out_bands(const records::ResponseData& response, int bands, int every);
+/// Every `every`-th band of so many octaves goes to `held_out`, the first after every / 2 others. Neighbouring lines of a
+/// measured response err alike: single lines left out would test nothing that their neighbours have not fitted. Lines at 0 Hz are
+/// kept. Errors, by name: octaves that are not above 0, every < 2, a part without lines.
+Expected<HeldOutBands> hold_out_bands(const records::ResponseData& response, double octaves, int every);
 
 }  // namespace bodeflow::residual

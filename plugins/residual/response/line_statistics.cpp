@@ -9,7 +9,7 @@
 namespace bodeflow::residual {
 namespace {
 
-constexpr Eigen::Index kBlocks = 20;
+constexpr Eigen::Index kBlocks = 40;
 // Beyond as many degrees of freedom a variance counts as known.
 constexpr double kKnown = 1e9;
 

@@ -20,6 +20,8 @@ using records::ResponseData;
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kHighest = 1e-3;
 constexpr double kLeak = 1e-4;
+// The unit of errors relative to the magnitude: so small that what no model of a real plant explains is many of it.
+constexpr double kRelative = 1e-3;
 
 Complex axis(double frequency_hz) { return {0.0, kTwoPi * frequency_hz}; }
 
@@ -43,7 +45,8 @@ class ResponseMeasurement final : public Measurement {
         sum.add(parts);
       }
     facts_.checksum = sum.text();
-    deviation_ = floor_known() ? Eigen::MatrixXd(data_.variance.cwiseSqrt()) : Eigen::MatrixXd(data_.response.cwiseAbs());
+    deviation_ =
+        floor_known() ? Eigen::MatrixXd(data_.variance.cwiseSqrt()) : Eigen::MatrixXd(kRelative * data_.response.cwiseAbs());
   }
 
   const MeasurementFacts& facts() const override { return facts_; }
@@ -52,7 +55,7 @@ class ResponseMeasurement final : public Measurement {
 
   Eigen::VectorXd residual(const JointModel& model, const Eigen::VectorXd& values) const override {
     const Eigen::MatrixXcd predicted = predicted_by(model, values);
-    // A complex error of variance v has v / 2 in each part; a relative one counts as it is.
+    // A complex error of variance v has v / 2 in each part; relative ones count as they are.
     const double parts = floor_known() ? std::sqrt(2.0) : 1.0;
     Eigen::VectorXd r(rows());
     for (Eigen::Index j = 0; j < inputs(); ++j) {
@@ -99,7 +102,7 @@ class ResponseMeasurement final : public Measurement {
     HeldOutError h;
     const auto points = static_cast<double>(lines() * inputs());
     if (!floor_known()) {
-      h.error = std::sqrt(residual.squaredNorm() / points);
+      h.error = kRelative * std::sqrt(residual.squaredNorm() / points);
       return h;
     }
     double square = 0.0;
@@ -219,7 +222,7 @@ class ResponseMeasurement final : public Measurement {
   ResponseData data_;
   Timing timing_;
   MeasurementFacts facts_;
-  Eigen::MatrixXd deviation_;  ///< of the complex values: their standard deviation, or their magnitude
+  Eigen::MatrixXd deviation_;  ///< of the complex values: their standard deviation, or kRelative of their magnitude
 };
 
 }  // namespace

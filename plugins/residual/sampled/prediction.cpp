@@ -35,7 +35,7 @@ Expected<Prediction> Prediction::make(const RecordInput& record, const JointMode
     if (auto done = p.answer_by_spectrum(); !done) return tl::unexpected(done.error());
   } else {
     if (model.has(Acts::parallel)) p.add_parallel();
-    p.input_ = &record.values(model, values, p.own_input_);
+    if (model.has(Acts::input)) p.own_input_ = record.mapped_values(model, values);
   }
   return p;
 }
@@ -79,7 +79,7 @@ Simulated Prediction::without_states(const Stretch& stretch) const {
   s.flow.resize(stretch.count, plant.places);
   s.stored.resize(stretch.count, plant.places);
   for (Eigen::Index n = 0; n < stretch.count; ++n) {
-    for (std::size_t j = 0; j < q; ++j) u[j] = (*input_)(stretch.first + n, static_cast<Eigen::Index>(j));
+    for (std::size_t j = 0; j < q; ++j) u[j] = input()(stretch.first + n, static_cast<Eigen::Index>(j));
     double y = product(plant.D, 0);
     for (std::size_t i = 0; i < m; ++i) {
       s.flow(n, static_cast<Eigen::Index>(i)) = product(plant.Df, i);
@@ -112,10 +112,10 @@ Expected<Simulated> Prediction::simulated(const Stretch& stretch, const Eigen::V
   drive.start_s = static_cast<double>(stretch.first) * t;
   drive.initial = state;
   const Eigen::Index each = drive.values_per_sample, last = record_->samples() - 1;
-  drive.input.resize(stretch.count * each, input_->cols());
+  drive.input.resize(stretch.count * each, input().cols());
   const Eigen::Index first = stretch.first - delay.late;
   for (Eigen::Index n = 0; n < stretch.count; ++n)
-    drive.input.middleRows(n * each, each) = input_->middleRows(std::clamp<Eigen::Index>(first + n, 0, last) * each, each);
+    drive.input.middleRows(n * each, each) = input().middleRows(std::clamp<Eigen::Index>(first + n, 0, last) * each, each);
   return simulate(*model_, *values_, record_->known(), drive);
 }
 

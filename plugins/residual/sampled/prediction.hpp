@@ -38,6 +38,7 @@ class Prediction {
   Expected<Simulated> simulated(const Stretch& stretch, const Eigen::VectorXd& state) const;
   void apply_output_effects(const Stretch& stretch, Simulated& s) const;
   std::complex<double> factors(std::complex<double> s) const;
+  const Eigen::MatrixXd& input() const { return own_input_.size() > 0 ? own_input_ : record_->values(); }
   const double* values_of(std::size_t addition) const { return model_->values_of(addition, *values_); }
 
   const RecordInput* record_;
@@ -46,7 +47,6 @@ class Prediction {
   Eigen::Index states_ = 0;
   bool by_spectrum_ = false;  ///< `added_` is all of the answer to the input
   Eigen::MatrixXd own_input_;
-  const Eigen::MatrixXd* input_ = nullptr;
   Eigen::VectorXd added_;  ///< to the output at all samples; empty: nothing
 };
 

@@ -72,22 +72,19 @@ Eigen::MatrixXd RecordInput::corrected(Eigen::MatrixXd fine) const {
   return fine;
 }
 
-const Eigen::MatrixXd& RecordInput::values(const JointModel& model, const Eigen::VectorXd& parameters,
-                                           Eigen::MatrixXd& own) const {
-  if (!model.has(Acts::input)) return ready_;
+Eigen::MatrixXd RecordInput::mapped_values(const JointModel& model, const Eigen::VectorXd& parameters) const {
   const bool between = fine_.rows() > 0;
-  own = between ? fine_ : channels_;
+  Eigen::MatrixXd mapped = between ? fine_ : channels_;
   const double step_s = sample_time_s_ / static_cast<double>(between ? values_per_sample_ : 1);
   for (std::size_t a = 0; a < model.additions.size(); ++a) {
     const Addition& addition = model.additions[a];
     if (addition.what.acts != Acts::input) continue;
     std::vector<double> memory(addition.what.memory, 0.0);
     const double* p = model.values_of(a, parameters);
-    for (Eigen::Index n = 0; n < own.rows(); ++n)
-      own(n, 0) = addition.effect->map(p, own(n, 0), static_cast<double>(n) * step_s, memory.data());
+    for (Eigen::Index n = 0; n < mapped.rows(); ++n)
+      mapped(n, 0) = addition.effect->map(p, mapped(n, 0), static_cast<double>(n) * step_s, memory.data());
   }
-  own = between ? corrected(std::move(own)) : plant_inputs(own);
-  return own;
+  return between ? corrected(std::move(mapped)) : plant_inputs(mapped);
 }
 
 }  // namespace bodeflow::residual

@@ -32,8 +32,10 @@ class RecordInput {
   Hold joined() const { return joined_; }
   /// samples x inputs: what the plant takes, at the samples.
   const Eigen::MatrixXd& at_samples() const { return at_samples_; }
-  /// samples * values_per_sample x inputs, the model's maps of the input applied; `own` keeps what is not ready made.
-  const Eigen::MatrixXd& values(const JointModel& model, const Eigen::VectorXd& parameters, Eigen::MatrixXd& own) const;
+  /// samples * values_per_sample x inputs.
+  const Eigen::MatrixXd& values() const { return ready_; }
+  /// The same with the model's maps of the input applied.
+  Eigen::MatrixXd mapped_values(const JointModel& model, const Eigen::VectorXd& parameters) const;
 
  private:
   Eigen::MatrixXd plant_inputs(const Eigen::MatrixXd& channels) const;

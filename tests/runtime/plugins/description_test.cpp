@@ -145,7 +145,7 @@ TEST_CASE("hostile JSON of a description never throws, and what is accepted is s
 }
 
 TEST_CASE("a plugin's description survives the way through JSON, refused or not") {
-  PluginDescription plugin{"/a.so", "a", "1", "gcc", std::string(64, '0'), {gain()}, ""};
+  PluginDescription plugin{"/a.so", "a", "1", "gcc", std::string(64, '0'), {gain()}, "", {}, {}};
   const auto back = plugin_from_json(to_json(plugin));
   REQUIRE(back);
   CHECK(back->blocks == plugin.blocks);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "periodic/periodic_measurement.hpp"
+#include "response/hold_out_bands.hpp"
 #include "response/response_measurement.hpp"
 #include "sampled/sampled_measurement.hpp"
 
@@ -17,7 +18,7 @@ using records::ResponseData;
 
 constexpr Eigen::Index kLeastPeriods = 2;
 constexpr Eigen::Index kLeastSamples = 200;
-constexpr Eigen::Index kLeastLines = 12;
+constexpr double kBandOctaves = 1.0 / 3.0;
 
 bool repeats(const Given& g) {
   const auto* r = std::get_if<Recording>(&g);
@@ -66,31 +67,15 @@ Expected<std::vector<Recording>> split_time(const Recording& r, std::size_t part
   return all;
 }
 
-ResponseData lines_of(const ResponseData& r, const std::vector<Eigen::Index>& lines) {
-  ResponseData p = r;
-  p.frequency_hz = r.frequency_hz(lines);
-  p.response = r.response(lines, Eigen::all);
-  if (r.variance.size() > 0) p.variance = r.variance(lines, Eigen::all);
-  p.confidence_radius.resize(0, 0);
-  p.lines.clear();
-  p.spectra.reset();
-  return p;
-}
-
-Expected<std::vector<ResponseData>> split_lines(const ResponseData& r, std::size_t parts) {
-  const Eigen::Index count = r.frequency_hz.size();
-  if (count < static_cast<Eigen::Index>(parts) * kLeastLines) {
-    return refused("the response has " + records::counted(count, "line") +
-                   ", allowed: " + std::to_string(static_cast<Eigen::Index>(parts) * kLeastLines) +
-                   " or more where it is split; give records of their own at 'select' and 'test'");
+/// Parts of a response: every fourth band of a third of an octave, and where two are wanted every third of the others.
+Expected<std::vector<ResponseData>> split_bands(const ResponseData& r, std::size_t parts) {
+  std::vector<ResponseData> all = {r};
+  for (int every = 4; all.size() < parts; --every) {
+    auto pieces = hold_out_bands(all.front(), kBandOctaves, every);
+    if (!pieces) return tl::unexpected(pieces.error());
+    all.front() = std::move(pieces->kept);
+    all.push_back(std::move(pieces->held_out));
   }
-  std::vector<std::vector<Eigen::Index>> lines(parts);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index turn = k % 4;
-    lines[turn == 1 ? 1 : turn == 3 && parts > 2 ? 2 : 0].push_back(k);
-  }
-  std::vector<ResponseData> all;
-  for (const auto& some : lines) all.push_back(lines_of(r, some));
   return all;
 }
 
@@ -99,13 +84,13 @@ Expected<std::vector<Given>> split(const Given& g, std::size_t parts, Engine eng
     if (!pieces) return tl::unexpected(pieces.error());
     return std::vector<Given>(pieces->begin(), pieces->end());
   };
-  if (const auto* response = std::get_if<ResponseData>(&g)) return as_given(split_lines(*response, parts));
+  if (const auto* response = std::get_if<ResponseData>(&g)) return as_given(split_bands(*response, parts));
   const Recording& r = std::get<Recording>(g);
   return as_given(engine == Engine::periodic ? split_periods(r, parts) : split_time(r, parts));
 }
 
 std::string how(const Given& g, Engine engine) {
-  if (std::holds_alternative<ResponseData>(g)) return "every fourth line";
+  if (std::holds_alternative<ResponseData>(g)) return "some bands of a third of an octave";
   return engine == Engine::periodic ? "a quarter of the periods at its end" : "a quarter of the samples at its end";
 }
 

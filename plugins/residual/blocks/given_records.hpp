@@ -27,8 +27,8 @@ enum class Engine { automatic, periodic, sampled };
 Engine engine_for(const GivenRecords& records, Engine wished);
 
 /// The records with `select` and `test`, taken from those at `fit` where they are absent: whole records from the end of the list
-/// while two at least remain, else parts of the last one (whole periods of a periodic one, a quarter of another one each, every
-/// fourth line of a response). Errors: a record too short to be split, with how much it would need.
+/// while two at least remain, else parts of the last one (whole periods of a periodic one, a quarter of another one each, bands
+/// of a response). Errors: a record too short to be split, with how much it would need.
 Expected<GivenRecords> with_all_parts(GivenRecords records, Engine engine);
 
 /// The records as measurements, "fit 1", "fit 2" ..., "select", "test". `known`: "record: name=value unit". Throws Failure for a

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <bodeflow/numerics/chi_squared.hpp>
-#include <bodeflow/numerics/random.hpp>
+
+#include "statistics.hpp"
 
 namespace bodeflow::residual {
 
@@ -16,7 +17,5 @@ double held_out_p(double gain, double fitted) {
   const double without = fitted > 0.0 ? numerics::chi_squared_tail(gain, fitted) : 0.0;
   return 0.5 * (without + numerics::chi_squared_tail(gain, fitted + 1.0));
 }
-
-double normal_limit(double probability) { return -numerics::normal_quantile(probability); }
 
 }  // namespace bodeflow::residual

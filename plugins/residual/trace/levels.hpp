@@ -34,7 +34,4 @@ inline constexpr double kLeastFall = 0.02;
 /// the record itself determined add a chi-squared of as many.
 double held_out_p(double gain, double fitted);
 
-/// The value that a standard normal deviate exceeds with `probability`.
-double normal_limit(double probability);
-
 }  // namespace bodeflow::residual

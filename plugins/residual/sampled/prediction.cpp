@@ -8,6 +8,7 @@
 #include "model/laws.hpp"
 #include "model/plant_matrices.hpp"
 #include "model/sample_delay.hpp"
+#include "model/sampled_path.hpp"
 #include "model/transition.hpp"
 #include "sampled/record_spectrum.hpp"
 
@@ -42,12 +43,11 @@ Expected<Prediction> Prediction::make(const RecordInput& record, const JointMode
 
 Expected<void> Prediction::answer_by_spectrum() {
   by_spectrum_ = true;
-  const double t = record_->sample_time_s();
+  const SampledPath path(*model_, *values_, record_->known(), record_->sample_time_s());
   const Eigen::MatrixXd& u = record_->at_samples();
   added_ = Eigen::VectorXd::Zero(u.rows());
   for (Eigen::Index j = 0; j < u.cols(); ++j) {
-    added_ += filtered(u.col(j), t, 1, Beyond::mirrored,
-                       [&](double f) { return sampled_response(*model_, *values_, record_->known(), f, t)[j]; });
+    added_ += filtered(u.col(j), record_->sample_time_s(), 1, Beyond::mirrored, [&](double f) { return path.at(f)[j]; });
   }
   if (!added_.allFinite()) return refused("the response is not finite: an immittance needs a plant that settles");
   return {};
@@ -112,11 +112,17 @@ Expected<Simulated> Prediction::simulated(const Stretch& stretch, const Eigen::V
   drive.start_s = static_cast<double>(stretch.first) * t;
   drive.initial = state;
   const Eigen::Index each = drive.values_per_sample, last = record_->samples() - 1;
-  drive.input.resize(stretch.count * each, input().cols());
+  // One sample more than asked for: with it the input after the last one is known.
+  drive.input.resize((stretch.count + 1) * each, input().cols());
   const Eigen::Index first = stretch.first - delay.late;
-  for (Eigen::Index n = 0; n < stretch.count; ++n)
+  for (Eigen::Index n = 0; n <= stretch.count; ++n)
     drive.input.middleRows(n * each, each) = input().middleRows(std::clamp<Eigen::Index>(first + n, 0, last) * each, each);
-  return simulate(*model_, *values_, record_->known(), drive);
+  auto s = simulate(*model_, *values_, record_->known(), drive);
+  if (!s) return s;
+  s->output.conservativeResize(stretch.count);
+  s->flow.conservativeResize(stretch.count, Eigen::NoChange);
+  s->stored.conservativeResize(stretch.count, Eigen::NoChange);
+  return s;
 }
 
 Complex Prediction::factors(Complex s) const {
@@ -162,7 +168,9 @@ Eigen::MatrixXd Prediction::free_response(Eigen::Index samples) const {
   Eigen::MatrixXd y(samples, states_);
   const auto plant = plant_matrices(*model_->base, values_->data(), record_->known());
   const Eigen::MatrixXd step = transition(plant->A, record_->sample_time_s()).phi;
-  Eigen::RowVectorXd row = plant->C * plant->scale.cwiseInverse().asDiagonal();
+  // A delay shows each sample the plant some time after the state.
+  const double offset_s = by_spectrum_ ? 0.0 : sample_delay(model_->delay_s(*values_), record_->sample_time_s()).offset_s;
+  Eigen::RowVectorXd row = plant->C * transition(plant->A, offset_s).phi * plant->scale.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd in_units = plant->scale.asDiagonal() * step * plant->scale.cwiseInverse().asDiagonal();
   for (Eigen::Index n = 0; n < samples; ++n) {
     y.row(n) = row;

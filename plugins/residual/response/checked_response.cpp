@@ -103,18 +103,17 @@ void drop_first_line(ResponseData& r) {
 
 }  // namespace
 
-Expected<ResponseData> checked_response(ResponseData r, const std::string& name, const BaseModel& base) {
-  const auto wrong = [&name](const std::string& what) { return refused("record '" + name + "': " + what); };
-  if (const std::string what = wrong_shape(r, base); !what.empty()) return wrong(what);
-  if (const std::string what = wrong_lines(r); !what.empty()) return wrong(what);
+Expected<ResponseData> checked_response(ResponseData r, const BaseModel& base) {
+  if (const std::string what = wrong_shape(r, base); !what.empty()) return refused(what);
+  if (const std::string what = wrong_lines(r); !what.empty()) return refused(what);
   if (r.frequency_hz.size() > 0 && r.frequency_hz[0] <= 0.0) drop_first_line(r);
   const std::size_t parameters = base.parameters().size();
   if (2 * r.response.size() <= static_cast<Eigen::Index>(parameters))
-    return wrong("it has " + counted(r.frequency_hz.size(), "line") + " above 0 Hz, too few for " +
-                 counted(static_cast<Eigen::Index>(parameters), "parameter"));
-  if (const std::string what = wrong_values(r); !what.empty()) return wrong(what);
-  if (const std::string what = not_complex(r); !what.empty()) return wrong(what);
-  if (const std::string what = convert_unit(r, base); !what.empty()) return wrong(what);
+    return refused("it has " + counted(r.frequency_hz.size(), "line") + " above 0 Hz, too few for " +
+                   counted(static_cast<Eigen::Index>(parameters), "parameter"));
+  if (const std::string what = wrong_values(r); !what.empty()) return refused(what);
+  if (const std::string what = not_complex(r); !what.empty()) return refused(what);
+  if (const std::string what = convert_unit(r, base); !what.empty()) return refused(what);
   return r;
 }
 

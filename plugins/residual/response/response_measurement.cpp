@@ -229,15 +229,14 @@ class ResponseMeasurement final : public Measurement {
 
 Expected<std::shared_ptr<const Measurement>> response_measurement(const records::ResponseData& response, const std::string& name,
                                                                   std::vector<double> known, const BaseModel& base) {
-  auto checked = checked_response(response, name, base);
+  auto checked = checked_response(response, base);
   if (!checked) return tl::unexpected(checked.error());
   if (known.size() != base.known().size())
-    return refused("record '" + name + "': " + std::to_string(known.size()) + " known values, the base model has " +
-                   std::to_string(base.known().size()));
+    return refused(std::to_string(known.size()) + " known values, the base model has " + std::to_string(base.known().size()));
   if (base.timing().hold != Hold::band_limited && !(checked->sample_rate_hz.value_or(0.0) > 0.0))
-    return refused("record '" + name +
-                   "': the input of the base model is held over each sample, and the response states no sample "
-                   "rate; declare hold=band_limited, or measure the response with its rate");
+    return refused(
+        "it states no sample rate, and the input of the base model is held over each sample; declare hold=band_limited, "
+        "or measure the response with its rate");
   return std::make_shared<const ResponseMeasurement>(std::move(*checked), name, std::move(known), base);
 }
 

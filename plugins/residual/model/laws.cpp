@@ -18,6 +18,10 @@ Laws::Laws(const JointModel& model, const Eigen::VectorXd& values, std::span<con
       active.rough = active.rough || addition.what.rough;
       memory_ += addition.what.memory;
     }
+    if (!active.of_base && active.laws.size() == 1 && active.laws.front().memory == 0) {
+      active.alone = active.laws.front().effect;
+      active.alone_values = active.laws.front().values;
+    }
     if (active.of_base || !active.laws.empty()) places_.push_back(std::move(active));
   }
 }

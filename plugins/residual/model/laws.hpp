@@ -24,8 +24,9 @@ class Laws {
 
   /// The sum of the reactions at active place i.
   Reaction react(std::size_t i, const Signals& signals, const double* memory, double* next) const {
-    Reaction sum;
     const Active& active = places_[i];
+    if (active.alone != nullptr) return active.alone->react(active.alone_values, signals, memory, next);
+    Reaction sum;
     if (active.of_base) sum = base_->react(values_, known_, active.place, signals);
     for (const Bound& law : active.laws) {
       const Reaction one = law.effect->react(law.values, signals, memory + law.memory, next + law.memory);
@@ -46,6 +47,8 @@ class Laws {
     std::size_t place = 0;
     bool of_base = false, rough = false;
     std::vector<Bound> laws;
+    const Effect* alone = nullptr;  ///< the only law of the place, its memory at the begin
+    const double* alone_values = nullptr;
   };
 
   const BaseModel* base_;

@@ -14,8 +14,8 @@ namespace bodeflow::residual {
 namespace {
 
 // A periodic simulation is steady when a period ends so near to where it began, as a part of the states.
-constexpr double kSteady = 1e-9;
-constexpr double kFolds = 21.0;  // e^-21 is below it
+constexpr double kSteady = 1e-6;
+constexpr double kFolds = 21.0;  // further than that, since laws can slow the plant down
 constexpr int kMostPeriods = 12;
 constexpr int kFineOfDouble = 8;
 constexpr int kLeastSingle = 4;
@@ -66,12 +66,11 @@ class Run {
         held_(drive.hold == Hold::zero_order),
         plan_{&plant_, &laws, held_ && !extra_ ? Push::held : Push::straight, drive.signals},
         grid_(grid_of(model, laws, drive, delay_.offset_s)),
-        stepper_(plan_, grid_),
-        u0_(plant_.inputs()),
-        u1_(plant_.inputs()) {
+        stepper_(plan_, grid_) {
     input_.resize(plant_.inputs(), drive.input.rows());
     input_.topRows(drive.input.cols()) = drive.input.transpose();
     if (extra_) input_.bottomRows(drive.extra_reaction.cols()) = drive.extra_reaction.transpose();
+    if (plan_.push == Push::straight) divide_input();
   }
 
   Simulated once();
@@ -80,15 +79,19 @@ class Run {
  private:
   /// Runs the sample times [from, to) of the input; sample n of the output goes to row n of `into` where there is one.
   void run(Eigen::Index from, Eigen::Index to, Eigen::Index wrap, Simulated* into);
-  void input_at(Eigen::Index m, int step);
-  Eigen::Index column_of(Eigen::Index m, Eigen::Index value) const;
+  void divide_input();
+  Eigen::VectorXd after(Eigen::Index column) const;
+  Eigen::Index sample_of(Eigen::Index m) const;
   void keep(Eigen::Index row, Simulated& into) const;
   Simulated room(Eigen::Index rows) const;
-  Eigen::VectorXd linear_step(const Transition& t, const Eigen::VectorXd& x, Eigen::Index m) const;
+  Eigen::VectorXd linear_run(const SmallMatrix& map, const Eigen::VectorXd& begin, Eigen::Index samples,
+                             Eigen::VectorXd* largest) const;
+  SmallMatrix linear_map() const;
   Eigen::VectorXd state() const { return Eigen::Map<const Eigen::VectorXd>(stepper_.state(), plant_.states()); }
   void begin(const Eigen::VectorXd& state, Eigen::Index m) {
-    input_at(m, 0);
-    stepper_.begin(state, u0_.data(), time_of(m));
+    const Eigen::Index n = sample_of(m);
+    stepper_.begin(state, plan_.push == Push::held ? input_.col(n * values_).data() : from_.col(n * grid_.steps).data(),
+                   time_of(m));
   }
   double time_of(Eigen::Index m) const {
     return std::max(0.0, drive_.start_s + static_cast<double>(m + delay_.late) * drive_.sample_time_s - delay_.offset_s);
@@ -103,35 +106,36 @@ class Run {
   StepPlan plan_;
   StepGrid grid_;
   Stepper stepper_;
-  Eigen::MatrixXd input_;  ///< inputs x values
-  Eigen::VectorXd u0_, u1_;
-  bool frozen_ = false;  ///< the time of laws stands still: before the record
+  Eigen::MatrixXd input_;      ///< inputs x values
+  Eigen::MatrixXd from_, to_;  ///< of a straight push: inputs x steps, at their begins and ends
+  bool frozen_ = false;        ///< the time of laws stands still: before the record
 };
 
-Eigen::Index Run::column_of(Eigen::Index m, Eigen::Index value) const {
-  if (drive_.periodic) {
-    const Eigen::Index n = m % samples_;
-    return (n < 0 ? n + samples_ : n) * values_ + value;
-  }
-  return std::clamp<Eigen::Index>(m, 0, samples_ - 1) * values_ + value;
+Eigen::Index Run::sample_of(Eigen::Index m) const {
+  if (!drive_.periodic) return std::clamp<Eigen::Index>(m, 0, samples_ - 1);
+  const Eigen::Index n = m % samples_;
+  return n < 0 ? n + samples_ : n;
 }
 
-void Run::input_at(Eigen::Index m, int step) {
-  const int each = grid_.steps / static_cast<int>(values_), value = step / each, part = step % each;
-  const auto here = input_.col(column_of(m, value));
-  if (plan_.push == Push::held) {
-    u0_ = here;
-    return;
-  }
-  Eigen::Index next = value + 1 < values_ ? column_of(m, value + 1) : column_of(m + 1, 0);
-  if (!drive_.periodic && m + 1 >= samples_ && value + 1 == values_) next = column_of(m, value);
-  const auto there = input_.col(next);
-  const double from = static_cast<double>(part) / each, to = static_cast<double>(part + 1) / each;
-  u0_ = here + from * (there - here);
-  u1_ = here + to * (there - here);
-  if (held_) {
-    const Eigen::Index q = drive_.input.cols();
-    u0_.head(q) = u1_.head(q) = here.head(q);
+/// The value that follows that one.
+Eigen::VectorXd Run::after(Eigen::Index column) const {
+  if (column + 1 < input_.cols()) return input_.col(column + 1);
+  return input_.col(drive_.periodic ? 0 : column);
+}
+
+void Run::divide_input() {
+  const int each = grid_.steps / static_cast<int>(values_);
+  const Eigen::Index held = held_ ? drive_.input.cols() : 0;
+  from_.resize(input_.rows(), input_.cols() * each);
+  to_.resizeLike(from_);
+  for (Eigen::Index c = 0; c < input_.cols(); ++c) {
+    const Eigen::VectorXd here = input_.col(c);
+    Eigen::VectorXd rise = after(c) - here;
+    rise.head(held).setZero();
+    for (int part = 0; part < each; ++part) {
+      from_.col(c * each + part) = here + static_cast<double>(part) / each * rise;
+      to_.col(c * each + part) = here + static_cast<double>(part + 1) / each * rise;
+    }
   }
 }
 
@@ -154,15 +158,23 @@ void Run::keep(Eigen::Index row, Simulated& into) const {
 
 void Run::run(Eigen::Index from, Eigen::Index to, Eigen::Index wrap, Simulated* into) {
   const double h = drive_.sample_time_s / grid_.steps;
+  const Eigen::Index q = plant_.inputs(), each = grid_.steps / values_;
+  const bool held = plan_.push == Push::held;
+  Eigen::Index n = sample_of(from), row = from + delay_.late;
+  if (wrap > 0) row = (row % wrap + wrap) % wrap;
   for (Eigen::Index m = from; m < to && stepper_.sound(); ++m) {
     const double begin_s = frozen_ ? 0.0 : time_of(m);
-    for (int step = 0; step < grid_.steps; ++step) {
-      input_at(m, step);
-      if (!stepper_.advance(step, u0_.data(), u1_.data(), frozen_ ? 0.0 : begin_s + step * h) || into == nullptr) continue;
-      Eigen::Index row = m + delay_.late;
-      if (wrap > 0) row = (row % wrap + wrap) % wrap;
-      if (row >= 0 && row < into->output.size()) keep(row, *into);
+    const double* value = input_.data() + n * values_ * q;
+    bool sampled = false;
+    for (int step = 0, part = 0; step < grid_.steps; ++step) {
+      const Eigen::Index at = (n * grid_.steps + step) * q;
+      const double *u0 = held ? value : from_.data() + at, *u1 = held ? value : to_.data() + at;
+      sampled = stepper_.advance(step, u0, u1, frozen_ ? 0.0 : begin_s + step * h) || sampled;
+      if (++part == each) part = 0, value += q;
     }
+    if (sampled && into != nullptr && row >= 0 && row < into->output.size()) keep(row, *into);
+    if (++row == wrap) row = 0;
+    n = drive_.periodic ? (n + 1 == samples_ ? 0 : n + 1) : sample_of(m + 1);
   }
 }
 
@@ -185,19 +197,40 @@ Simulated Run::once() {
   return s;
 }
 
-Eigen::VectorXd Run::linear_step(const Transition& t, const Eigen::VectorXd& x, Eigen::Index m) const {
-  Eigen::VectorXd next = x;
-  for (Eigen::Index value = 0; value < values_; ++value) {
-    const auto u = input_.col(column_of(m, value));
-    const Eigen::VectorXd push = plant_.B * u;
-    next = (t.phi * next + t.psi[0] * push).eval();
-    if (plan_.push == Push::held) continue;
-    const auto v = input_.col(value + 1 < values_ ? column_of(m, value + 1) : column_of(m + 1, 0));
-    Eigen::VectorXd rise = v - u;
-    if (held_) rise.head(drive_.input.cols()).setZero();
-    next += t.psi[1] * (plant_.B * rise) / t.h;
+/// x after a value of the input from [x | value | the next value].
+SmallMatrix Run::linear_map() const {
+  const Transition t = transition(plant_.A, drive_.sample_time_s / static_cast<double>(values_));
+  const Eigen::Index n = plant_.states(), q = plant_.inputs(), straight = held_ ? drive_.input.cols() : 0;
+  Eigen::MatrixXd end = t.psi[1] * plant_.B / t.h;
+  end.leftCols(straight).setZero();
+  const Eigen::MatrixXd begin = t.psi[0] * plant_.B - end;
+  SmallMatrix map(static_cast<int>(n), static_cast<int>(n + 2 * q));
+  for (int r = 0; r < map.rows; ++r) {
+    for (int c = 0; c < static_cast<int>(n); ++c) map.at(r, c) = t.phi(r, c);
+    for (int c = 0; c < static_cast<int>(q); ++c) {
+      map.at(r, static_cast<int>(n) + c) = begin(r, c);
+      map.at(r, static_cast<int>(n + q) + c) = end(r, c);
+    }
   }
-  return next;
+  return map;
+}
+
+/// Where the plant without laws is after so many samples of a periodic input; the largest states on the way go to `largest`.
+Eigen::VectorXd Run::linear_run(const SmallMatrix& map, const Eigen::VectorXd& begin, Eigen::Index samples,
+                                Eigen::VectorXd* largest) const {
+  const Eigen::Index n = plant_.states(), q = plant_.inputs();
+  std::vector<double> v(static_cast<std::size_t>(map.columns)), x(static_cast<std::size_t>(map.padded));
+  std::copy(begin.data(), begin.data() + n, x.begin());
+  for (Eigen::Index c = 0; c < samples * values_; ++c) {
+    const double *here = input_.data() + c * q, *there = c + 1 < input_.cols() ? here + q : input_.data();
+    std::copy(x.data(), x.data() + n, v.data());
+    std::copy(here, here + q, v.data() + n);
+    std::copy(there, there + q, v.data() + n + q);
+    product(map, v.data(), x.data());
+    if (largest == nullptr) continue;
+    for (Eigen::Index i = 0; i < n; ++i) (*largest)[i] = std::max((*largest)[i], std::abs(x[static_cast<std::size_t>(i)]));
+  }
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), n);
 }
 
 /// The slowest time constant of decaying modes.
@@ -214,15 +247,8 @@ double slowest_s(const Eigen::MatrixXd& a) {
 Simulated Run::periodic() {
   const Eigen::Index n = plant_.states(), count = samples_ * drive_.periods;
   // The linear steady state at the begin of the input, x = (I - Phi^N)^-1 x_N, x_N reached from rest.
-  const Transition t = transition(plant_.A, drive_.sample_time_s / static_cast<double>(values_));
-  const auto linear_run = [&](Eigen::VectorXd x, Eigen::Index to, Eigen::VectorXd* largest) {
-    for (Eigen::Index m = 0; m < to; ++m) {
-      x = linear_step(t, x, m);
-      if (largest != nullptr) *largest = largest->cwiseMax(x.cwiseAbs());
-    }
-    return x;
-  };
-  const Eigen::VectorXd reached = linear_run(Eigen::VectorXd::Zero(n), samples_, nullptr);
+  const SmallMatrix map = linear_map();
+  const Eigen::VectorXd reached = linear_run(map, Eigen::VectorXd::Zero(n), samples_, nullptr);
   const Eigen::MatrixXd whole = transition(plant_.A, drive_.sample_time_s * static_cast<double>(samples_)).phi;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(kSteady);
@@ -233,7 +259,7 @@ Simulated Run::periodic() {
   const double needed = std::ceil(kFolds * slowest_s(plant_.A) / drive_.sample_time_s);
   const Eigen::Index warm = needed < static_cast<double>(samples_) ? static_cast<Eigen::Index>(needed) : samples_;
   Eigen::VectorXd size = Eigen::VectorXd::Constant(n, 1e-300);
-  const Eigen::VectorXd before = linear_run(steady, samples_ - warm, &size);
+  const Eigen::VectorXd before = linear_run(map, steady, samples_ - warm, &size);
   frozen_ = true;
   begin(before, -warm);
   run(-warm, 0, samples_, nullptr);
@@ -265,8 +291,10 @@ Simulated Run::periodic() {
 }
 
 void Run::take_off_drift(const Eigen::VectorXd& drift, Simulated& s) const {
-  const Eigen::VectorXd ramp =
-      Eigen::VectorXd::LinSpaced(samples_, 0.0, static_cast<double>(samples_ - 1)) / static_cast<double>(samples_);
+  // By when it was simulated: samples of a late output stand at the begin of the period and come from its end.
+  Eigen::VectorXd ramp(samples_);
+  for (Eigen::Index n = 0; n < samples_; ++n)
+    ramp[n] = static_cast<double>(sample_of(n - delay_.late)) / static_cast<double>(samples_);
   s.output -= (plant_.C * drift)(0) * ramp;
   if (!drive_.signals) return;
   s.flow -= ramp * (plant_.Cf * drift).transpose();
@@ -275,7 +303,7 @@ void Run::take_off_drift(const Eigen::VectorXd& drift, Simulated& s) const {
 
 Expected<void> check(const PlantMatrices& plant, const Drive& drive) {
   if (drive.input.cols() != plant.inputs()) {
-    return refused("the plant has " + std::to_string(plant.inputs()) + " inputs, the drive has " +
+    return refused("the plant has " + std::to_string(plant.inputs()) + " input(s), the drive has " +
                    std::to_string(drive.input.cols()));
   }
   if (drive.values_per_sample < 1 || drive.input.rows() == 0 || drive.input.rows() % drive.values_per_sample != 0)

@@ -39,7 +39,7 @@ struct Simulated {
 /// polynomials of time: see Stepper. Smooth laws are solved with order 4; around jumps and corners, and for laws with a memory,
 /// single steps of order 2 weighted by theta = 0.6 take over. A sample that is taken between steps (delay) is computed from these
 /// polynomials. `time_s` of laws is 0 before the record begins.
-/// A periodic drive is run from the linear steady state until a period ends where it began, within 1e-9 of the states; a plant
+/// A periodic drive is run from the linear steady state until a period ends where it began, within 1e-6 of the states; a plant
 /// that integrates may drift, which is taken off the output as a straight line.
 /// Errors: sizes that do not fit, a model without state space.
 Expected<Simulated> simulate(const JointModel& model, const Eigen::VectorXd& values, std::span<const double> known,

@@ -117,15 +117,18 @@ StepMaps maps(const StepPlan& plan, const std::vector<Instant>& nodes, double h,
   s.known = SmallMatrix(rows, columns);
   s.unknown = SmallMatrix(rows, k * count);
   const Writer write{plan, count, &s.known, &s.unknown};
-  write(nodes.back(), Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Zero(n, q), Eigen::MatrixXd::Zero(n, k), 0);
+  write(nodes.back(), Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Zero(n, q), Eigen::MatrixXd::Zero(n, k), 2 * k * count);
   const Eigen::MatrixXd cf = active_rows(p.Cf, *plan.laws), df = active_rows(p.Df, *plan.laws),
                         ff = active_columns(active_rows(p.Ff, *plan.laws), *plan.laws);
   const Eigen::MatrixXd cs = active_rows(p.Cs, *plan.laws), ds = active_rows(p.Ds, *plan.laws),
                         fs = active_columns(active_rows(p.Fs, *plan.laws), *plan.laws);
   for (int i = 0; i < count; ++i) {
-    write(nodes[static_cast<std::size_t>(i)], cf, df, ff, n + 2 * k * i);
-    write(nodes[static_cast<std::size_t>(i)], cs, ds, fs, n + 2 * k * i + k);
+    write(nodes[static_cast<std::size_t>(i)], cf, df, ff, 2 * k * i);
+    write(nodes[static_cast<std::size_t>(i)], cs, ds, fs, 2 * k * i + k);
   }
+  for (int place = 0; place < k; ++place)
+    for (int r = 0; r < 2 * count; ++r)
+      for (int c = 0; c < k * count; ++c) s.gains.push_back(s.unknown.at(r * k + place, c));
   s.sample_s = sample_s;
   if (sample_s < 0.0) return s;
   const int sampled = 1 + (plan.signals ? 2 * all : 0);

@@ -14,8 +14,10 @@ enum class Push { held, straight };
 /// unknown the reactions at the middle and the end of a double step, at the end of a single one.
 struct StepMaps {
   double h = 0.0;
-  SmallMatrix known;    ///< rows: x at the end, then for each node (middle, end) flows and stored quantities of the active places
+  SmallMatrix known;    ///< rows: for each node (middle, end) flows and stored quantities of the active places; then x at the end
   SmallMatrix unknown;  ///< the same rows, columns: reactions of all active places at the middle, then at the end
+  /// The same for the signals alone: per active place (flow, stored quantity) of each node by all unknown reactions.
+  std::vector<double> gains;
   double sample_s = -1;                      ///< a sample is taken so long after the step's begin; below 0: none
   SmallMatrix sample_known, sample_unknown;  ///< rows: output, then flows and stored quantities of all places where asked for
 };

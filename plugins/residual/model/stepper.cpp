@@ -8,7 +8,7 @@ namespace bodeflow::residual {
 namespace {
 
 // The law's reaction is solved to this part of the largest one: derivatives are differences over 1e-5.
-constexpr double kSolved = 1e-12;
+constexpr double kSolved = 1e-11;
 constexpr int kNewton = 8;
 constexpr int kSweeps = 30;
 constexpr int kBisections = 200;
@@ -16,6 +16,8 @@ constexpr int kBisections = 200;
 constexpr double kBend = 1e-3;
 // The flow over which a law may spread a jump: a part of what the jump changes itself, since the end of a step is implicit.
 constexpr double kSpread = 0.05;
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
@@ -38,25 +40,25 @@ Stepper::Stepper(const StepPlan& plan, const StepGrid& grid)
     double_ = double_step(plan, t, -1.0);
     double_sampled_ = double_step(plan, t, std::max(within, 0.0));
   }
+  any_rough_ = laws_.any_rough();
   feeds_through_ = false;
   for (std::size_t i = 0; i < laws_.count(); ++i) {
     const auto place = static_cast<Eigen::Index>(laws_.place(i));
     feeds_through_ = feeds_through_ || !plan.plant->Df.row(place).isZero(0.0) || !plan.plant->Ds.row(place).isZero(0.0);
-    gain_.push_back(std::max(-single_.unknown.column(static_cast<int>(i))[n_ + static_cast<int>(i)], 0.0) * kSpread);
+    gain_.push_back(std::max(-single_.unknown.column(static_cast<int>(i))[i], 0.0) * kSpread);
   }
-  const auto size = [](int count) { return static_cast<std::size_t>(count); };
-  x_.assign(size(n_ + 1), 0.0);
-  v_.assign(size(single_.known.columns), 0.0);
-  out_.assign(size(n_ + 4 * k_ + 2), 0.0);
-  w_.assign(size(3 * k_), 0.0);
-  last_.assign(size(3 * k_), 0.0);
-  scale_.assign(size(k_), 0.0);
+  x_.assign(at(n_ + 1), 0.0);
+  v_.assign(at(single_.known.columns), 0.0);
+  out_.assign(at(n_ + 4 * k_ + 2), 0.0);
+  w_.assign(at(3 * k_), 0.0);
+  last_.assign(at(3 * k_), 0.0);
+  scale_.assign(at(k_), 0.0);
   memory_.assign(laws_.memory() + 1, 0.0);
   next_.assign(laws_.memory() + 1, 0.0);
-  u_.assign(size(q_), std::numeric_limits<double>::quiet_NaN());
-  ua_.assign(size(q_), 0.0);
-  ub_.assign(size(q_), 0.0);
-  sample_.assign(size(2 + 2 * static_cast<int>(plan.plant->places()) + 1), 0.0);
+  u_.assign(at(q_), std::numeric_limits<double>::quiet_NaN());
+  ua_.assign(at(q_), 0.0);
+  ub_.assign(at(q_), 0.0);
+  sample_.assign(at(2 + 2 * static_cast<int>(plan.plant->places()) + 1), 0.0);
 }
 
 void Stepper::begin(const Eigen::VectorXd& state, const double* input, double time_s) {
@@ -85,70 +87,89 @@ bool Stepper::advance(int step, const double* u0, const double* u1, double time_
     load(u0, u1);
     if (advance_double(sample ? double_sampled_ : double_, time_s, sample)) return sample;
   }
-  return advance_fine(u0, u1, time_s, sample);
+  advance_fine(u0, u1, time_s, sample);
+  return sample;
 }
 
 // ---- double steps
 
 bool Stepper::advance_double(const StepMaps& maps, double time_s, bool sample) {
-  if (!settle_double(maps, time_s) || bends()) {
+  const bool settled = k_ == 1   ? settle_double<1>(maps, time_s)
+                       : k_ == 2 ? settle_double<2>(maps, time_s)
+                                 : settle_double<0>(maps, time_s);
+  if (!settled || (any_rough_ && bends())) {
     predicts_ = false;
     return false;
   }
-  std::copy(out_.begin(), out_.begin() + n_, x_.begin());
+  move_state(maps, 4 * k_, 2 * k_);
   if (sample) take_sample(maps, 2);
   keep_scale();
-  std::copy(w_.begin(), w_.end(), last_.begin());
-  std::copy(w_.begin() + 2 * k_, w_.end(), w_.begin());
+  for (int i = 0; i < 3 * k_; ++i) last_[at(i)] = w_[at(i)];
+  for (int i = 0; i < k_; ++i) w_[at(i)] = w_[at(2 * k_ + i)];
   predicts_ = true;
   return true;
 }
 
+/// x at the end: what is known of it (in out_) and the part of the reactions.
+void Stepper::move_state(const StepMaps& maps, int signals, int unknown) {
+  const double *w = w_.data() + k_, *known = out_.data() + signals;
+  double* x = x_.data();
+  for (int r = 0; r < n_; ++r) x[r] = known[r];
+  for (int c = 0; c < unknown; ++c) {
+    const double* column = maps.unknown.column(c) + signals;
+    for (int r = 0; r < n_; ++r) x[r] += column[r] * w[c];
+  }
+}
+
+/// The number of active places is Places, or any where that is 0.
+template <int Places>
 bool Stepper::settle_double(const StepMaps& maps, double time_s) {
-  for (int i = 0; i < k_; ++i) {
-    const auto begin = static_cast<std::size_t>(i), middle = begin + static_cast<std::size_t>(k_),
-               end = middle + static_cast<std::size_t>(k_);
-    const bool parabola = predicts_ && !laws_.rough(begin);
-    w_[middle] = parabola ? last_[begin] - 3.0 * last_[middle] + 3.0 * last_[end] : w_[begin];
-    w_[end] = parabola ? 3.0 * last_[begin] - 8.0 * last_[middle] + 6.0 * last_[end] : w_[begin];
+  const int k = Places > 0 ? Places : k_;
+  double *first = w_.data(), *middle = first + k, *end = middle + k;
+  const double* last = last_.data();
+  for (int i = 0; i < k; ++i) {
+    const bool parabola = predicts_ && !laws_.rough(at(i));
+    middle[i] = parabola ? last[i] - 3.0 * last[k + i] + 3.0 * last[2 * k + i] : first[i];
+    end[i] = parabola ? 3.0 * last[i] - 8.0 * last[k + i] + 6.0 * last[2 * k + i] : first[i];
   }
   product(maps.known, v_.data(), out_.data());
-  for (int c = 0; c < 2 * k_; ++c) add_column(maps.unknown, c, w_[static_cast<std::size_t>(k_ + c)], out_.data());
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kNewton; ++round) {
     double change = 0.0;
-    for (std::size_t i = 0; i < laws_.count(); ++i) change = std::max(change, correct_double(i, maps, time_s));
+    for (int i = 0; i < k; ++i) change = std::max(change, correct_double<Places>(i, maps, time_s));
     if (!(change < 1e300)) return false;
-    // Newton's steps shrink by their own ratio at least, so what is left is below the step times it.
+    // Newton's steps shrink as the square of their ratio.
     const double ratio = std::min(change / before, 1.0);
-    if (change == 0.0 || (round > 0 && change * ratio <= kSolved) || change <= kSolved) return true;
+    if (change <= kSolved || (round > 0 && change * ratio * ratio <= kSolved)) return true;
     before = change;
   }
   return false;
 }
 
 /// One step of Newton's method in the two reactions of place i; its size over the largest reaction.
-double Stepper::correct_double(std::size_t i, const StepMaps& maps, double time_s) {
-  const int p = static_cast<int>(i), fm = n_ + p, sm = fm + k_, fe = sm + k_, se = fe + k_;
-  const double* const out = out_.data();
-  const double half = 0.5 * maps.h;
-  const Reaction middle = laws_.react(i, {out[fm], out[sm], time_s + half, half, gain_[i]}, memory_.data(), next_.data());
-  const Reaction end = laws_.react(i, {out[fe], out[se], time_s + maps.h, half, gain_[i]}, memory_.data(), next_.data());
-  const double *by_middle = maps.unknown.column(p), *by_end = maps.unknown.column(k_ + p);
-  double &wm = w_[i + static_cast<std::size_t>(k_)], &we = w_[i + 2 * static_cast<std::size_t>(k_)];
-  const double a = 1.0 - middle.by_flow * by_middle[fm] - middle.by_stored * by_middle[sm];
-  const double b = -middle.by_flow * by_end[fm] - middle.by_stored * by_end[sm];
-  const double c = -end.by_flow * by_middle[fe] - end.by_stored * by_middle[se];
-  const double d = 1.0 - end.by_flow * by_end[fe] - end.by_stored * by_end[se];
-  const double rm = middle.value - wm, re = end.value - we, determinant = a * d - b * c;
-  const double dm = (d * rm - b * re) / determinant, de = (a * re - c * rm) / determinant;
+template <int Places>
+double Stepper::correct_double(int i, const StepMaps& maps, double time_s) {
+  const int k = Places > 0 ? Places : k_;
+  const double *gains = maps.gains.data() + 8 * k * i, *w = w_.data() + k;
+  double now[4];  // flow and stored quantity at the middle, at the end
+  for (int r = 0; r < 4; ++r) {
+    now[r] = out_[at(r * k + i)];
+    for (int c = 0; c < 2 * k; ++c) now[r] += gains[2 * k * r + c] * w[c];
+  }
+  const double half = 0.5 * maps.h, gain = gain_[at(i)];
+  const Reaction middle = laws_.react(at(i), {now[0], now[1], time_s + half, half, gain}, memory_.data(), next_.data());
+  const Reaction end = laws_.react(at(i), {now[2], now[3], time_s + maps.h, half, gain}, memory_.data(), next_.data());
+  const auto slope = [&](const Reaction& r, int row, int column) {
+    return -r.by_flow * gains[2 * k * row + column] - r.by_stored * gains[2 * k * (row + 1) + column];
+  };
+  double &wm = w_[at(k + i)], &we = w_[at(2 * k + i)];
+  const double a = 1.0 + slope(middle, 0, i), b = slope(middle, 0, k + i), c = slope(end, 2, i), d = 1.0 + slope(end, 2, k + i);
+  const double rm = middle.value - wm, re = end.value - we, per = 1.0 / (a * d - b * c);
+  const double dm = (d * rm - b * re) * per, de = (a * re - c * rm) * per;
   wm += dm;
   we += de;
-  add_column(maps.unknown, p, dm, out_.data());
-  add_column(maps.unknown, k_ + p, de, out_.data());
-  const double size = std::max({scale_[i], std::abs(wm), std::abs(we)});
   const double change = std::max(std::abs(dm), std::abs(de));
-  return change == 0.0 ? 0.0 : change / size;
+  return change == 0.0 ? 0.0 : change / std::max({scale_[at(i)], std::abs(wm), std::abs(we)});
 }
 
 bool Stepper::bends() const {
@@ -163,7 +184,7 @@ bool Stepper::bends() const {
 
 // ---- single steps
 
-bool Stepper::advance_fine(const double* u0, const double* u1, double time_s, bool sample) {
+void Stepper::advance_fine(const double* u0, const double* u1, double time_s, bool sample) {
   const bool straight = plan_.push == Push::straight;
   for (int f = 0; f < grid_.fine; ++f) {
     const bool here = sample && f == sample_fine_;
@@ -171,31 +192,25 @@ bool Stepper::advance_fine(const double* u0, const double* u1, double time_s, bo
     if (straight) {
       const double from = static_cast<double>(f) / grid_.fine, to = static_cast<double>(f + 1) / grid_.fine;
       for (int j = 0; j < q_; ++j) {
-        const auto at = static_cast<std::size_t>(j);
-        ua_[at] = u0[j] + from * (u1[j] - u0[j]);
-        ub_[at] = u0[j] + to * (u1[j] - u0[j]);
+        ua_[at(j)] = u0[j] + from * (u1[j] - u0[j]);
+        ub_[at(j)] = u0[j] + to * (u1[j] - u0[j]);
       }
     }
     load(straight ? ua_.data() : u0, ub_.data());
     const double begin_s = time_s + f * maps.h;
     sound_ = settle_single(maps, begin_s) && sound_;
-    std::copy(out_.begin(), out_.begin() + n_, x_.begin());
+    move_state(maps, 2 * k_, k_);
     if (here) take_sample(maps, 1);
     if (laws_.keeps_memory()) keep_memory(maps, begin_s);
-    std::copy(w_.begin() + k_, w_.begin() + 2 * k_, w_.begin() + 2 * k_);
+    for (int i = 0; i < k_; ++i) w_[at(i)] = w_[at(2 * k_ + i)] = w_[at(k_ + i)];
     keep_scale();
-    std::copy(w_.begin() + 2 * k_, w_.end(), w_.begin());
   }
-  return sample;
 }
 
 bool Stepper::settle_single(const StepMaps& maps, double time_s) {
   product(maps.known, v_.data(), out_.data());
-  for (int i = 0; i < k_; ++i) {
-    w_[static_cast<std::size_t>(k_ + i)] = w_[static_cast<std::size_t>(i)];
-    add_column(maps.unknown, i, w_[static_cast<std::size_t>(i)], out_.data());
-  }
   if (k_ == 0) return true;
+  for (int i = 0; i < k_; ++i) w_[at(k_ + i)] = w_[at(i)];
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     double most = 0.0;
     for (std::size_t i = 0; i < laws_.count(); ++i) {
@@ -208,37 +223,46 @@ bool Stepper::settle_single(const StepMaps& maps, double time_s) {
   return false;
 }
 
+/// Flow and stored quantity of place i at the end of a single step.
+Signals Stepper::single_signals(std::size_t i, const StepMaps& maps, double time_s) const {
+  const std::size_t k = at(k_);
+  const double *gains = maps.gains.data() + 2 * k * i, *w = w_.data() + k_;
+  double flow = out_[i], stored = out_[k + i];
+  for (std::size_t c = 0; c < k; ++c) {
+    flow += gains[c] * w[c];
+    stored += gains[k + c] * w[c];
+  }
+  return {flow, stored, time_s + maps.h, maps.h, gain_[i]};
+}
+
 /// The reaction of place i at the end of a single step with the others as they stand: the root of w - law(signals(w)), which
 /// rises in w for laws that rise in flow and stored quantity. Newton's method, and halving of the interval where it leaves it.
 bool Stepper::solve_place(std::size_t i, const StepMaps& maps, double time_s, double* change) {
-  const int p = static_cast<int>(i), f = n_ + p, s = f + k_;
-  const double *by = maps.unknown.column(p), flow = out_[static_cast<std::size_t>(f)], stored = out_[static_cast<std::size_t>(s)];
-  const double begin = w_[i + static_cast<std::size_t>(k_)];
-  double w = begin, low = -std::numeric_limits<double>::infinity(), high = -low;
-  double before = high;
+  const double *by = maps.unknown.column(static_cast<int>(i)) + i, by_flow = by[0], by_stored = by[k_];
+  double& w = w_[i + at(k_)];
+  const double begin = w;
+  const Signals free = single_signals(i, maps, time_s);
+  double low = -std::numeric_limits<double>::infinity(), high = -low, before = high;
   bool solved = false;
-  for (int round = 0; round < kBisections; ++round) {
-    const double moved = w - begin;
-    const Signals signals{flow + by[f] * moved, stored + by[s] * moved, time_s + maps.h, maps.h, gain_[i]};
+  for (int round = 0; round < kBisections && !solved; ++round) {
+    Signals signals = free;
+    signals.flow += by_flow * (w - begin);
+    signals.stored += by_stored * (w - begin);
     const Reaction r = laws_.react(i, signals, memory_.data(), next_.data());
     const double error = r.value - w;
     if (!std::isfinite(error)) return false;
     (error > 0.0 ? low : high) = w;
-    const double slope = 1.0 - r.by_flow * by[f] - r.by_stored * by[s];
+    const double slope = 1.0 - r.by_flow * by_flow - r.by_stored * by_stored;
     double next = w + error / slope;
     const bool bounded = std::isfinite(low) && std::isfinite(high);
     if (!(slope > 0.0) || (bounded && !(next > low && next < high))) next = bounded ? 0.5 * (low + high) : w + error;
     const double step = std::abs(next - w), size = std::max({scale_[i], std::abs(next), std::abs(w)}) * kSolved;
-    solved = error == 0.0 || step <= size || (bounded && high - low <= size) ||
-             (round > 0 && step < 0.1 * before && step * step / before <= size);
-    w = error == 0.0 ? w : next;
-    if (solved) break;
+    solved =
+        step <= size || (bounded && high - low <= size) || (round > 0 && step < 0.1 * before && step * step / before <= size);
+    w = next;
     before = step;
   }
-  add_column(maps.unknown, p, w - begin, out_.data());
-  w_[i + static_cast<std::size_t>(k_)] = w;
-  const double size = std::max(scale_[i], std::abs(w));
-  *change = w == begin ? 0.0 : std::abs(w - begin) / size;
+  *change = w == begin ? 0.0 : std::abs(w - begin) / std::max(scale_[i], std::abs(w));
   return solved;
 }
 
@@ -279,21 +303,17 @@ void Stepper::resettle(double time_s, const double* u) {
 }
 
 void Stepper::keep_memory(const StepMaps& maps, double time_s) {
-  for (std::size_t i = 0; i < laws_.count(); ++i) {
-    const auto f = static_cast<std::size_t>(n_) + i, s = f + static_cast<std::size_t>(k_);
-    laws_.react(i, {out_[f], out_[s], time_s + maps.h, maps.h, gain_[i]}, memory_.data(), next_.data());
-  }
+  for (std::size_t i = 0; i < laws_.count(); ++i) laws_.react(i, single_signals(i, maps, time_s), memory_.data(), next_.data());
   memory_.swap(next_);
 }
 
 void Stepper::keep_scale() {
-  for (std::size_t i = 0; i < laws_.count(); ++i)
-    scale_[i] = std::max(scale_[i], std::abs(w_[i + 2 * static_cast<std::size_t>(k_)]));
+  for (std::size_t i = 0; i < laws_.count(); ++i) scale_[i] = std::max(scale_[i], std::abs(w_[i + 2 * at(k_)]));
 }
 
 void Stepper::take_sample(const StepMaps& maps, int nodes) {
   product(maps.sample_known, v_.data(), sample_.data());
-  for (int c = 0; c < nodes * k_; ++c) add_column(maps.sample_unknown, c, w_[static_cast<std::size_t>(k_ + c)], sample_.data());
+  for (int c = 0; c < nodes * k_; ++c) add_column(maps.sample_unknown, c, w_[at(k_ + c)], sample_.data());
 }
 
 }  // namespace bodeflow::residual

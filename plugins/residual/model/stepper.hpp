@@ -39,9 +39,13 @@ class Stepper {
 
  private:
   bool advance_double(const StepMaps& maps, double time_s, bool sample);
-  bool advance_fine(const double* u0, const double* u1, double time_s, bool sample);
+  void advance_fine(const double* u0, const double* u1, double time_s, bool sample);
+  void move_state(const StepMaps& maps, int signals, int unknown);
+  Signals single_signals(std::size_t i, const StepMaps& maps, double time_s) const;
+  template <int Places>
   bool settle_double(const StepMaps& maps, double time_s);
-  double correct_double(std::size_t i, const StepMaps& maps, double time_s);
+  template <int Places>
+  double correct_double(int i, const StepMaps& maps, double time_s);
   bool bends() const;
   bool settle_single(const StepMaps& maps, double time_s);
   bool solve_place(std::size_t i, const StepMaps& maps, double time_s, double* change);
@@ -55,7 +59,8 @@ class Stepper {
   Laws laws_;
   StepGrid grid_;
   int n_, q_, k_;
-  bool feeds_through_;  ///< inputs reach a place at once: reactions jump with them
+  bool any_rough_ = false;
+  bool feeds_through_ = false;  ///< inputs reach a place at once: reactions jump with them
   StepMaps double_, double_sampled_, single_, single_sampled_;
   int sample_step_ = 0, sample_fine_ = 0;
   std::vector<double> gain_;                              ///< of each place in a single step

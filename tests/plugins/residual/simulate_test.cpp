@@ -143,6 +143,7 @@ TEST_CASE("simulate: sharp friction stops a mass and lets it go, within 1 % of a
   const Eigen::VectorXd v = mass_values();
   auto [addition, effect] = made(Acts::law, 1, 0);
   addition.what.rough = true;
+  addition.what.steps_per_sample = 4;
   effect->law = [](const double* p, const Signals& s, const double*, double*) {
     const double width = 1e-4 + s.gain * p[0];
     return std::abs(s.flow) < width ? Reaction{p[0] * s.flow / width, p[0] / width, 0.0}

@@ -179,7 +179,7 @@ std::vector<FitParameter> MotorStandstill::parameters() const {
 
 std::vector<Place> MotorStandstill::places() const {
   return {place("inverter", "inverter", "A", "A*s", "V"), place("stator_winding", "winding", "A", "A*s", "V"),
-          place("rotor_winding", "winding", "A", "A*s", "V"), place("core", "core", "V", "V*s", "A")};
+          place("rotor_winding", "rotor", "A", "A*s", "V"), place("core", "core", "V", "V*s", "A")};
 }
 
 Timing MotorStandstill::timing() const {
@@ -236,6 +236,12 @@ bool MotorStandstill::state_space(const double* v, const double*, LinearPlant& p
     const int circuit = k == rotor ? 1 : 0;
     for (int j = 0; j < 2; ++j) at(plant.Cf, 2, k, j) = current[circuit][j];
     at(plant.Ff, kPlaces, k, core) = by_core;
+  }
+  // The core's voltage, p (dx_s/dt + dx_r/dt); what a change of w induces in the leakage, -q dw/dt, is left out.
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) at(plant.Cf, 2, core, j) += p * at(plant.A, 2, i, j);
+    for (int j = 0; j < kPlaces; ++j) at(plant.Ff, kPlaces, core, j) += p * at(plant.E, kPlaces, i, j);
+    at(plant.Df, 1, core, 0) += p * at(plant.B, 1, i, 0);
   }
   for (int j = 0; j < 2; ++j) at(plant.Cs, 2, core, j) = p;
   at(plant.Fs, kPlaces, core, core) = -q;

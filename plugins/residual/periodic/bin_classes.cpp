@@ -1,0 +1,129 @@
+#include "periodic/bin_classes.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <bodeflow/numerics/chi_squared.hpp>
+#include <cmath>
+#include <optional>
+
+#include "statistics.hpp"
+
+namespace bodeflow::residual {
+namespace {
+
+// Mean of n exponential values over their median / ln 2: variance of the ratio times n, 1 + 1 / ln^2 2 - 2 cov with cov = 1.
+constexpr double kMeanOverMedian = 1.08;
+
+double multiple(double mean_square) { return std::sqrt(std::max(mean_square, 0.0)); }
+
+std::vector<Eigen::Index> bins_of(const PeriodicRecord& r, Kind kind) {
+  std::vector<Eigen::Index> bins;
+  for (Eigen::Index l = 0; l < r.bins(); ++l)
+    if (r.kind[static_cast<std::size_t>(l)] == kind) bins.push_back(l);
+  return bins;
+}
+
+Eigen::VectorXd frequencies(const PeriodicRecord& r, const std::vector<Eigen::Index>& bins) {
+  Eigen::VectorXd f(static_cast<Eigen::Index>(bins.size()));
+  for (std::size_t n = 0; n < bins.size(); ++n) f[static_cast<Eigen::Index>(n)] = r.frequency_hz[bins[n]];
+  return f;
+}
+
+/// Sum of squares of a class, the part that uncertain parameters may have made taken out, and its degrees of freedom.
+struct Sum {
+  double squares = 0.0, freedom = 0.0;
+};
+
+class Tester {
+ public:
+  Tester(const PeriodicRecord& record, const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
+         const Eigen::MatrixXd& covariance, bool fitted)
+      : r_(record), residual_(residual), jacobian_(jacobian), covariance_(covariance), fitted_(fitted) {}
+
+  std::optional<ClassTest> lines(const char* name, Kind kind) const {
+    const std::vector<Eigen::Index> bins = bins_of(r_, kind);
+    if (bins.empty()) return {};
+    const Sum s = sum(bins);
+    if (s.freedom < 0.5) return {};
+    const double ratio = s.squares / s.freedom;
+    return ClassTest{name, multiple(ratio), f_tail(ratio, s.freedom, 2.0 / r_.floor.relative_variance(frequencies(r_, bins)))};
+  }
+
+  std::optional<ClassTest> between() const {
+    const std::vector<Eigen::Index> bins = bins_of(r_, Kind::between);
+    if (bins.empty()) return {};
+    const Sum s = sum(bins);
+    if (s.freedom < 0.5) return {};
+    const double ratio = s.squares / s.freedom, freedom = s.freedom / kMeanOverMedian;
+    return ClassTest{"between", multiple(ratio), numerics::chi_squared_tail(ratio * freedom, freedom)};
+  }
+
+  std::optional<ClassTest> peak() const {
+    double least = 1.0, highest = 0.0, count = 0.0;
+    for (Eigen::Index l = 0; l < r_.bins(); ++l) {
+      const Kind kind = r_.kind[static_cast<std::size_t>(l)];
+      if (kind != Kind::between && kind != Kind::skirt) continue;
+      const BinRows rows = rows_of(l);
+      const double power = residual_.segment(rows.begin, rows.count).squaredNorm() / 2.0;
+      ++count;
+      if (power <= highest) continue;
+      highest = power;
+      const double nu = 2.0 / r_.floor.relative_variance(Eigen::VectorXd::Constant(1, r_.frequency_hz[l]));
+      least = std::min(least, f_tail(power, 2.0, nu));
+    }
+    if (count == 0.0) return {};
+    return ClassTest{"peak", multiple(highest), -std::expm1(count * std::log1p(-std::min(least, 1.0 - 1e-16)))};
+  }
+
+ private:
+  Sum sum(const std::vector<Eigen::Index>& bins) const {
+    Eigen::Index rows = 0;
+    for (const Eigen::Index l : bins) rows += rows_of(l).count;
+    Eigen::VectorXd r(rows);
+    Eigen::MatrixXd j(rows, jacobian_.cols());
+    Eigen::Index at = 0;
+    for (const Eigen::Index l : bins) {
+      const BinRows from = rows_of(l);
+      r.segment(at, from.count) = residual_.segment(from.begin, from.count);
+      j.middleRows(at, from.count) = jacobian_.middleRows(from.begin, from.count);
+      at += from.count;
+    }
+    Sum s{r.squaredNorm(), static_cast<double>(rows)};
+    const Eigen::MatrixXd gram = j.transpose() * j;
+    if (fitted_) {
+      s.freedom -= (gram * covariance_).trace();
+    } else {
+      const Eigen::VectorXd b = j.transpose() * r;
+      const Eigen::MatrixXd middle = Eigen::MatrixXd::Identity(b.size(), b.size()) + covariance_ * gram;
+      s.squares -= b.dot(middle.partialPivLu().solve(covariance_ * b));
+    }
+    return s;
+  }
+
+  const PeriodicRecord& r_;
+  const Eigen::VectorXd& residual_;
+  const Eigen::MatrixXd& jacobian_;
+  const Eigen::MatrixXd& covariance_;
+  bool fitted_;
+};
+
+}  // namespace
+
+std::vector<ClassTest> test_bins(const PeriodicRecord& record, const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
+                                 const Eigen::MatrixXd& covariance, bool fitted) {
+  const Tester tester(record, residual, jacobian, covariance, fitted);
+  std::vector<ClassTest> tests;
+  const auto keep = [&tests](std::optional<ClassTest> test) {
+    if (test) tests.push_back(std::move(*test));
+  };
+  keep(tester.lines("excited", Kind::excited));
+  keep(tester.lines("odd", Kind::odd));
+  keep(tester.lines("even", Kind::even));
+  keep(tester.lines("dc", Kind::dc));
+  keep(tester.lines("skirts", Kind::skirt));
+  keep(tester.between());
+  keep(tester.peak());
+  return tests;
+}
+
+}  // namespace bodeflow::residual

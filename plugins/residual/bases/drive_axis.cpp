@@ -20,8 +20,10 @@ void DriveAxis::describe(Describe& d) {
       "M dv/dt + F v = f u with the declared force constant f. The position integrates the velocity, so errors of a simulated "
       "position grow with time; `inverse` turns the model round: from the measured position to the force (u f), "
       "without any state. The derivatives of the position come from a low-pass filter applied forth and back (no phase); "
-      "its corner `filter` is declared, and the force passes the same filter. Noise of the position beyond the corner is left "
-      "out, and so are friction's edges that are sharper. Effects act at the bearing, over the velocity and the position.");
+      "its corner `filter` is declared, and the force passes the same filter, as the reactions of effects do. A command that is "
+      "held "
+      "acts half a sample later in the mean: with `inverse` declare that as `delay`, too. Effects act at the bearing, over the "
+      "velocity and the position.");
   d.parameter("motion", "linear").choices({"linear", "rotary"}).doc("units of the parameters: kg and N, or kg m^2 and N m");
   d.parameter("force_constant", 1.0).above(0.0).doc("force (torque) by a unit of the input");
   d.parameter("output", "position").choices({"position", "velocity"}).doc("what is measured; a velocity knows no position");
@@ -40,7 +42,7 @@ void DriveAxis::configure(const Parameters& p) {
   if (inverse_ && velocity_) fail("inverse takes the measured position: output says velocity");
   if (inverse_ && !p.has("filter")) fail("inverse needs filter: the corner of the low-pass behind the derivatives");
   if (!inverse_ && p.has("filter")) fail("filter belongs to inverse, which forms derivatives");
-  if (inverse_ && timing_.delay_s > 0.0) fail("inverse has no delay: shift the record instead");
+  if (inverse_) timing_.delay_s = -timing_.delay_s;  // what acts on the position now was commanded before
 }
 
 std::vector<FitParameter> DriveAxis::parameters() const {
@@ -66,8 +68,13 @@ std::vector<std::string> DriveAxis::conventions() const {
   const std::string constant =
       "force constant " + short_text(force_constant_) + (rotary_ ? " N m" : " N") + " by a unit of the motor's input (declared)";
   if (inverse_) {
-    return {constant, "force from the measured position: its derivatives and the force pass a low-pass filter of " +
-                          short_text(filter_hz_) + " Hz, forth and back"};
+    std::vector<std::string> words = {constant,
+                                      "force from the measured position: its derivatives and the force pass a "
+                                      "low-pass filter of " +
+                                          short_text(filter_hz_) + " Hz, forth and back"};
+    if (timing_.delay_s < 0.0)
+      words.push_back("the motor's input acts " + short_text(-1e6 * timing_.delay_s) + " us after its sample");
+    return words;
   }
   std::vector<std::string> words = timing_words(timing_);
   words.insert(words.begin(), constant);

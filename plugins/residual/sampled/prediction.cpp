@@ -76,11 +76,12 @@ Simulated Prediction::without_states(const Stretch& stretch) const {
   };
   Simulated s;
   s.output.resize(stretch.count);
+  Eigen::VectorXd reactions(stretch.count);
   s.flow.resize(stretch.count, plant.places);
   s.stored.resize(stretch.count, plant.places);
   for (Eigen::Index n = 0; n < stretch.count; ++n) {
     for (std::size_t j = 0; j < q; ++j) u[j] = input()(stretch.first + n, static_cast<Eigen::Index>(j));
-    double y = product(plant.D, 0);
+    double by_laws = 0.0;
     for (std::size_t i = 0; i < m; ++i) {
       s.flow(n, static_cast<Eigen::Index>(i)) = product(plant.Df, i);
       s.stored(n, static_cast<Eigen::Index>(i)) = product(plant.Ds, i);
@@ -92,11 +93,16 @@ Simulated Prediction::without_states(const Stretch& stretch) const {
       signals.stored = s.stored(n, place);
       signals.time_s = static_cast<double>(stretch.first + n) * record_->sample_time_s();
       signals.step_s = record_->sample_time_s();
-      y += plant.F[laws.place(i)] * laws.react(i, signals, memory.data(), next.data()).value;
+      by_laws += plant.F[laws.place(i)] * laws.react(i, signals, memory.data(), next.data()).value;
     }
     memory.swap(next);
-    s.output[n] = y;
+    s.output[n] = product(plant.D, 0);
+    reactions[n] = by_laws;
   }
+  const double t = record_->sample_time_s(), corner = model_->base->filter_hz(), delay_s = model_->delay_s(*values_);
+  if (laws.count() > 0) s.output += corner > 0.0 ? smooth_derivative(reactions, t, corner, 0) : reactions;
+  if (delay_s != 0.0)
+    s.output = filtered(s.output, t, 1, Beyond::mirrored, [delay_s](double f) { return std::exp(-s_at(f) * delay_s); });
   return s;
 }
 

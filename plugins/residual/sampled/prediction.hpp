@@ -9,10 +9,11 @@ namespace bodeflow::residual {
 
 /// What a model makes of a record's input with one set of values: stretch by stretch, from a state of its own each.
 ///
-/// Plants without states are evaluated sample by sample, laws included; all others are simulated. Effects in series and in
-/// parallel act through the spectrum of the stretch, mirrored at its ends. An immittance needs an otherwise linear model that
-/// settles: its answer to the input comes from the record's spectrum, its answer to the state is that of the base model. Maps
-/// of the output act last, from the first sample of the stretch on.
+/// Plants without states are evaluated sample by sample; where derivatives are filtered, reactions of laws pass the same filter,
+/// as the measured output did. All others are simulated. Effects in series and in parallel act through the spectrum of the
+/// stretch, mirrored at its ends. An immittance needs an otherwise linear model that settles: its answer to the input comes from
+/// the record's spectrum, its answer to the state is that of the base model. Maps of the output act last, from the first sample
+/// of the stretch on.
 class Prediction {
  public:
   /// Refers to its arguments, which have to outlive it. Errors: the model can't be computed with these values, or not on a

@@ -23,13 +23,13 @@ void Creep::describe(DescribeEffect& effect) {
 }
 
 std::vector<FitParameter> Creep::parameters(const Situation& s) const {
-  return {real("creep", lines::ratio_unit(s.place.reaction_unit, s.place.stored_unit), 0.1 * lines::coefficient_of(s.place))
+  return {real("creep", lines::ratio_unit(s.place.reaction_unit, s.place.stored_unit), 0.1 * lines::coefficient_of(s))
               .between(0.0, std::numeric_limits<double>::infinity())
               .says("growth of the stiffness in a decade of frequency")};
 }
 
 std::vector<std::vector<double>> Creep::starts(const Situation& s) const {
-  return {{0.0}, {0.1 * lines::coefficient_of(s.place)}};
+  return {{0.0}, {0.1 * lines::coefficient_of(s)}};
 }
 
 std::string Creep::sentence(std::span<const double> value, std::span<const double> std, const Situation& s) const {

@@ -8,7 +8,7 @@ namespace bodeflow::residual {
 namespace {
 
 /// A tenth of the susceptance of the magnetising inductance in the middle of the band.
-double typical(const Situation& s) { return 0.1 * lines::coefficient_of(s.place) / lines::middle_omega(s); }
+double typical(const Situation& s) { return 0.1 * lines::coefficient_of(s) / lines::middle_omega(s); }
 
 }  // namespace
 

@@ -63,10 +63,15 @@ inline double middle_omega(const Situation& s) {
   return count > 0 ? kTwoPi * std::exp(sum / count) : 1.0;
 }
 
-/// The coefficient of the base model at the place, or what the largest signals say of it; 1 where nothing is known.
-inline double coefficient_of(const Place& place) {
-  if (place.coefficient > 0.0) return place.coefficient;
-  return place.effort > 0.0 && place.flow > 0.0 ? place.effort / place.flow : 1.0;
+/// The coefficient of the base model at the place, or what the largest signals there say of it: effort over flow for a resistance
+/// or damping, over what is stored for a stiffness, the reactance at the upper end for a coil; 1 where nothing is known.
+inline double coefficient_of(const Situation& s) {
+  const Place& p = s.place;
+  if (p.coefficient > 0.0) return p.coefficient;
+  if (!(p.effort > 0.0) || !(p.flow > 0.0)) return 1.0;
+  if (p.kind == "coil") return highest_omega(s) * p.flow / p.effort;
+  const bool over_stored = (p.kind == "spring" || p.kind == "core") && p.stored > 0.0;
+  return p.effort / (over_stored ? p.stored : p.flow);
 }
 
 /// The time x that brings the base response times (1 - s x) nearest to what was measured, by weighted least squares over the

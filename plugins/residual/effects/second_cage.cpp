@@ -24,7 +24,7 @@ std::vector<FitParameter> SecondCage::parameters(const Situation&) const {
 }
 
 std::vector<std::vector<double>> SecondCage::starts(const Situation& s) const {
-  const double resistance = lines::coefficient_of(s.place), highest = lines::highest_omega(s), middle = lines::middle_omega(s);
+  const double resistance = lines::coefficient_of(s), highest = lines::highest_omega(s), middle = lines::middle_omega(s);
   std::vector<std::vector<double>> starts;
   for (const double omega : {2.0 * highest, std::sqrt(highest * middle), middle})
     starts.push_back({resistance / (omega * omega), 1.0 / omega});

@@ -31,7 +31,7 @@ std::vector<FitParameter> SemiInductance::parameters(const Situation&) const {
 }
 
 std::vector<std::vector<double>> SemiInductance::starts(const Situation& s) const {
-  const double reactance = lines::kTwoPi * kReferenceHz / lines::coefficient_of(s.place);  // the coefficient is 1 / inductance
+  const double reactance = lines::kTwoPi * kReferenceHz / lines::coefficient_of(s);  // the coefficient is 1 / inductance
   return {{reactance, 0.7}, {reactance, 0.5}, {0.2 * reactance, 0.5}};
 }
 

@@ -40,7 +40,7 @@ std::vector<FitParameter> SkinEffect::parameters(const Situation&) const {
 }
 
 std::vector<std::vector<double>> SkinEffect::starts(const Situation& s) const {
-  const double resistance = lines::coefficient_of(s.place), highest = lines::highest_omega(s);
+  const double resistance = lines::coefficient_of(s), highest = lines::highest_omega(s);
   std::vector<std::vector<double>> starts;
   for (const double depth : {1.0, 6.0, 30.0}) {
     const double time = depth / highest;

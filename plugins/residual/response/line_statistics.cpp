@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <bodeflow/numerics/chi_squared.hpp>
-#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
-#include <limits>
 
 namespace bodeflow::residual {
 namespace {
@@ -71,12 +69,6 @@ double block_deviate(const Eigen::VectorXd& before, const Eigen::VectorXd& after
   const auto n = static_cast<double>(count);
   const double spread = std::sqrt((fall.array() - fall.mean()).square().sum() / (n - 1.0));
   return spread > 0.0 ? fall.mean() * std::sqrt(n) / spread : 0.0;
-}
-
-double f_ratio_limit(double probability, double d1, double d2) {
-  if (!(d2 < kKnown)) return numerics::chi_squared_limit(probability, d1) / d1;
-  const double x = boost::math::ibeta_inv(d2 / 2.0, d1 / 2.0, probability);
-  return d2 * (1.0 - x) / (d1 * x);
 }
 
 }  // namespace bodeflow::residual

@@ -23,7 +23,4 @@ double likeness_length(const Eigen::VectorXd& residual, Eigen::Index inputs);
 /// Mean over its standard deviation of the falls of |r|^2 by blocks of neighbouring lines, about 20 of all inputs together.
 double block_deviate(const Eigen::VectorXd& before, const Eigen::VectorXd& after, Eigen::Index inputs);
 
-/// The value that an F distributed ratio exceeds with that probability; d2 may be infinite.
-double f_ratio_limit(double probability, double d1, double d2);
-
 }  // namespace bodeflow::residual

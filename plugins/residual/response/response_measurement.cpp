@@ -10,6 +10,7 @@
 #include "line_statistics.hpp"
 #include "model/simulate.hpp"
 #include "records/checksum.hpp"
+#include "statistics.hpp"
 
 namespace bodeflow::residual {
 namespace {
@@ -113,8 +114,8 @@ class ResponseMeasurement final : public Measurement {
     const double freedom = std::max(2.0 * mean * mean / data_.variance.squaredNorm() / shared, 1.0);
     h.error = std::sqrt(square / points);
     h.floor = std::sqrt(mean / points);
-    h.highest = h.floor * std::sqrt(f_ratio_limit(kHighest, freedom, freedom * freedom_of_variance()));
-    h.lowest = h.floor * std::sqrt(f_ratio_limit(1.0 - kLeak, freedom, freedom * freedom_of_variance()));
+    h.highest = h.floor * std::sqrt(f_limit(kHighest, freedom, freedom * freedom_of_variance()));
+    h.lowest = h.floor * std::sqrt(f_limit(1.0 - kLeak, freedom, freedom * freedom_of_variance()));
     return h;
   }
 
@@ -212,11 +213,17 @@ class ResponseMeasurement final : public Measurement {
 
   /// (I + J C J')^-1/2 r: what of a residual that was not fitted the uncertain parameters do not explain.
   static Eigen::VectorXd whitened(const Eigen::VectorXd& r, const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& covariance) {
+    // With C = L L' and (J L)' J L = V S V', (I + J C J')^-1/2 r = r + J L V ((1 + S)^-1/2 - 1) S^-1 V' (J L)' r.
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> c(covariance);
-    const Eigen::MatrixXd spread = jacobian * c.eigenvectors() * c.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(spread, Eigen::ComputeThinU);
-    const Eigen::VectorXd factor = (1.0 + svd.singularValues().array().square()).rsqrt() - 1.0;
-    return r + svd.matrixU() * (factor.asDiagonal() * (svd.matrixU().transpose() * r));
+    const Eigen::MatrixXd root = c.eigenvectors() * c.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal(),
+                          spread = jacobian * root;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> inner(spread.transpose() * spread);
+    const Eigen::VectorXd factor = inner.eigenvalues().unaryExpr([](double x) {
+      const double t = std::sqrt(1.0 + std::max(x, 0.0));
+      return -1.0 / (t * (1.0 + t));  // (1 / t - 1) / x without the difference of near numbers
+    });
+    const Eigen::VectorXd projected = inner.eigenvectors().transpose() * (spread.transpose() * r);
+    return r + spread * (inner.eigenvectors() * factor.cwiseProduct(projected));
   }
 
   ResponseData data_;

@@ -11,7 +11,7 @@
 
 namespace bodeflow::residual {
 
-/// The linear part of a joint model at one set of values, for many frequencies.
+/// The linear part of a joint model at one set of values, for many frequencies; for one thread.
 class LinearPath {
  public:
   /// The model has to live as long.
@@ -26,24 +26,28 @@ class LinearPath {
 
   /// (1 + places) x (inputs + places): the plant alone.
   void plant(std::complex<double> s, Eigen::MatrixXcd& g) const;
+  /// 1 x inputs each, without delay: `plain` the plant alone, `joint` = (plant with immittances + parallel) series.
+  void responses(std::complex<double> s, Eigen::RowVectorXcd& plain, Eigen::RowVectorXcd& joint) const;
   /// What the immittances of each place add up to.
   Eigen::VectorXcd immittances(std::complex<double> s) const;
   /// The product of the series effects.
   std::complex<double> series(std::complex<double> s) const;
   /// The sum of the parallel effects.
   std::complex<double> parallel(std::complex<double> s) const;
-  /// 1 x inputs: (plant with immittances + parallel) series, without delay, from `g` of `plant(s)`.
-  Eigen::RowVectorXcd undelayed(std::complex<double> s, const Eigen::MatrixXcd& g) const;
 
  private:
+  void seen(std::complex<double> s) const;
+
   const JointModel& model_;
   const Eigen::VectorXd& values_;
   std::span<const double> known_;
   std::optional<PlantMatrices> plant_;
   std::optional<Modes> modes_;
+  std::vector<Eigen::Index> immittance_places_;
+  /// Of the output and the flows with immittances, by inputs and reactions there.
   Resolvent resolvent_;
   Eigen::MatrixXd direct_;
-  std::vector<Eigen::Index> immittance_places_;
+  mutable Eigen::MatrixXcd g_;
   bool bare_ = true;
 };
 

@@ -34,10 +34,10 @@ void Resolvent::at(std::complex<double> x, Eigen::MatrixXcd& result) const {
   result.setZero(c_.rows(), b_.cols());
   if (modal_) {
     for (Eigen::Index i = 0; i < poles_.size(); ++i) {
-      const std::complex<double> factor = 1.0 / (x - poles_[i]);
+      const std::complex<double> factor = reciprocal(x - poles_[i]);
       for (Eigen::Index column = 0; column < b_.cols(); ++column) {
-        const std::complex<double> pushed = factor * b_(i, column);
-        for (Eigen::Index row = 0; row < c_.rows(); ++row) result(row, column) += c_(row, i) * pushed;
+        const std::complex<double> pushed = times(factor, b_(i, column));
+        for (Eigen::Index row = 0; row < c_.rows(); ++row) result(row, column) += times(c_(row, i), pushed);
       }
     }
   } else if (a_.rows() > 0) {

@@ -6,6 +6,15 @@
 
 namespace bodeflow::residual {
 
+/// The product and the reciprocal of finite complex numbers, without the care for infinities that makes the operators slow.
+inline std::complex<double> times(std::complex<double> a, std::complex<double> b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+inline std::complex<double> reciprocal(std::complex<double> a) {
+  const double per = 1.0 / (a.real() * a.real() + a.imag() * a.imag());
+  return {a.real() * per, -a.imag() * per};
+}
+
 /// The modes of a square matrix: A = vectors diag(poles) vectors^-1.
 struct Modes {
   Eigen::VectorXcd poles;

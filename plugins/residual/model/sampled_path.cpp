@@ -11,8 +11,6 @@ using Complex = std::complex<double>;
 // Aliases on each side that are added one by one.
 constexpr int kAliases = 3;
 
-double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(x) / x; }
-
 }  // namespace
 
 SampledPath::SampledPath(const JointModel& model, const Eigen::VectorXd& values, std::span<const double> known,
@@ -25,31 +23,34 @@ SampledPath::SampledPath(const JointModel& model, const Eigen::VectorXd& values,
     exact_.emplace(*path_.matrices(), path_.modes(), hold_ == Hold::first_order, sample_time_s, delay_s_);
 }
 
-Complex SampledPath::hold(double frequency_hz) const {
-  const double half = std::numbers::pi * frequency_hz * sample_time_s_;
-  return hold_ == Hold::zero_order ? std::polar(1.0, -half) * sinc(half) : Complex(sinc(half) * sinc(half));
-}
-
 Eigen::RowVectorXcd SampledPath::at(double frequency_hz) const {
-  const auto s_of = [](double f) { return Complex(0.0, 2.0 * std::numbers::pi * f); };
+  const Complex s(0.0, 2.0 * std::numbers::pi * frequency_hz);
   if (exact_ && path_.bare()) return exact_->at(frequency_hz);
   if (hold_ == Hold::band_limited || frequency_hz == 0.0) {
-    const Complex s = s_of(frequency_hz);
-    path_.plant(s, g_);
-    return path_.undelayed(s, g_) * std::exp(-s * delay_s_);
+    path_.responses(s, plain_, joint_);
+    return joint_ * std::exp(-s * delay_s_);
   }
+  // The hold at the aliases of f has one numerator, over f + k / T or its square; a delay turns them by equal angles.
+  const double rate = 1.0 / sample_time_s_, angle = std::numbers::pi * frequency_hz * sample_time_s_, sine = std::sin(angle);
+  const bool straight = hold_ == Hold::first_order;
+  const Complex numerator = (straight ? Complex(sine * sine) : std::polar(sine, -angle)) * std::exp(-s * delay_s_);
+  const Complex turn = std::polar(1.0, -2.0 * std::numbers::pi * delay_s_ * rate);
+  Complex turned = std::conj(turn) * std::conj(turn) * std::conj(turn);
+  static_assert(kAliases == 3);
   const Eigen::Index q = path_.inputs();
   Eigen::RowVectorXcd joint = Eigen::RowVectorXcd::Zero(q), plain = joint, outer_joint = joint, outer_plain = joint;
-  for (int k = -kAliases; k <= kAliases; ++k) {
-    const double f = frequency_hz + k / sample_time_s_;
-    const Complex s = s_of(f), factor = hold(f) * std::exp(-s * delay_s_);
-    path_.plant(s, g_);
-    const Eigen::RowVectorXcd a = factor * path_.undelayed(s, g_), b = factor * g_.row(0).head(q);
-    joint += a;
-    plain += b;
-    if (std::abs(k) < kAliases) continue;
-    outer_joint += a;
-    outer_plain += b;
+  for (int k = -kAliases; k <= kAliases; ++k, turned = times(turned, turn)) {
+    const double x = std::numbers::pi * (frequency_hz + k * rate) * sample_time_s_;
+    const Complex factor = times(numerator, turned) * (1.0 / (straight ? x * x : x));
+    path_.responses({0.0, 2.0 * std::numbers::pi * (frequency_hz + k * rate)}, plain_, joint_);
+    for (Eigen::Index j = 0; j < q; ++j) {
+      const Complex a = times(factor, joint_[j]), b = times(factor, plain_[j]);
+      joint[j] += a;
+      plain[j] += b;
+      if (std::abs(k) < kAliases) continue;
+      outer_joint[j] += a;
+      outer_plain[j] += b;
+    }
   }
   if (!exact_) return joint;
   const Eigen::RowVectorXcd rest = exact_->at(frequency_hz) - plain;

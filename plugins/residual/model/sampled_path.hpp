@@ -20,13 +20,11 @@ class SampledPath {
   const LinearPath& path() const { return path_; }
 
  private:
-  std::complex<double> hold(double frequency_hz) const;
-
   LinearPath path_;
   Hold hold_;
   double sample_time_s_, delay_s_;
   std::optional<SampledPlant> exact_;
-  mutable Eigen::MatrixXcd g_;
+  mutable Eigen::RowVectorXcd plain_, joint_;
 };
 
 }  // namespace bodeflow::residual

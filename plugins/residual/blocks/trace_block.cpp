@@ -124,7 +124,7 @@ void TraceBlock::describe(Describe& d) {
   d.message_in(fit).doc("recordings or frequency responses, one or more");
   d.message_in(select).optional().doc("one; without it a part of what arrives at `fit` is set aside");
   d.message_in(test).optional().doc("one; without it a part of what arrives at `fit` is set aside");
-  d.message_in(model).optional().record_type("model").doc("for a base model that is a black box");
+  d.message_in(model).optional().doc("for a base model that is a black box: a model, or a frequency response");
   d.message_out(out).record_type("trace");
   d.message_out(base).record_type("model").doc("the base model");
   d.message_out(extended).record_type("model").doc("with the effects that were found; the base model where there are none");

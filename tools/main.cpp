@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   add_run(app, session);
   add_identify(app, session);
   add_compare(app, session);
+  add_trace(app, session);
   add_check(app, session);
   add_plan(app, session);
   add_graph(app, session);

@@ -21,7 +21,7 @@ struct Library::State {
   boost::dll::shared_library library;
   Host host{"", nullptr};  // of `factories`: a plugin may keep it as long as it is loaded
   PluginDescription description;
-  std::map<std::pair<std::string, std::string>, const bf_factory*> factories;  // by kind and id
+  std::map<std::string, const bf_factory*> factories;  // by id
 };
 
 namespace {
@@ -75,9 +75,6 @@ Result add(const bf_factory& factory, const std::string& what, tl::expected<Desc
   auto description = read(*static_cast<const C*>(factory.descriptor));
   if (!description) return failure(description.error());
   if (description->id != id) return failure(what + " '" + description->id + "': its factory is named '" + id + "'");
-  for (const Description& other : descriptions) {
-    if (other.id == id) return failure("gives " + what + " '" + id + "' twice");
-  }
   descriptions.push_back(std::move(*description));
   return {};
 }
@@ -132,7 +129,8 @@ tl::expected<std::unique_ptr<Library>, std::string> Library::load(const std::fil
     if (factory == nullptr || factory->kind == nullptr) return failure("a factory or its kind is a null pointer");
     const auto entered = enter(*factory, state.description);
     if (!entered) return failure(entered.error());
-    if (*entered) state.factories.emplace(std::pair(factory->kind, factory->id), factory);
+    if (*entered && !state.factories.emplace(factory->id, factory).second)
+      return failure(fmt::format("gives {} '{}' twice", factory->kind, factory->id));
   }
   return made;
 }
@@ -144,8 +142,8 @@ tl::expected<bf_block, std::string> Library::create(const std::string& id, const
 }
 
 Result Library::create_part(const std::string& kind, const std::string& id, const bf_host& host, void* made) const {
-  const auto found = state_->factories.find({kind, id});
-  if (found == state_->factories.end()) return failure(fmt::format("gives no {} '{}'", kind, id));
+  const auto found = state_->factories.find(id);
+  if (found == state_->factories.end() || found->second->kind != kind) return failure(fmt::format("gives no {} '{}'", kind, id));
   std::int32_t result = BF_FAILED;
   try {
     result = found->second->create(found->second, &host, made);

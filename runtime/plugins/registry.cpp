@@ -136,63 +136,81 @@ nlohmann::ordered_json words_of(PluginDescription plugin) {
 }  // namespace
 
 struct Registry::State : PartShelf {
+  /// Where something stands: an id belongs to one block, effect or base model.
   struct Place {
+    std::string kind;
     std::size_t plugin = 0;
     std::size_t index = 0;
   };
-  using Places = std::map<std::string, Place>;
   std::vector<PluginDescription> plugins;
-  Places blocks, effects, base_models;
+  std::map<std::string, Place> places;
 
   void take(std::vector<PluginDescription> found) {
     plugins = std::move(found);
     libraries_.resize(plugins.size());
     for (std::size_t i = 0; i < plugins.size(); ++i) {
-      if (plugins[i].refused.empty()) enter(i);
+      PluginDescription& plugin = plugins[i];
+      if (plugin.refused.empty()) plugin.refused = repeats(plugin);
+      if (plugin.refused.empty()) enter(i);
     }
-    for (const auto& [id, place] : effects) descriptors_.add(plugins[place.plugin].effects[place.index]);
-    for (const auto& [id, place] : base_models) descriptors_.add_base_model(plugins[place.plugin].base_models[place.index]);
+    for (const auto& [id, place] : places) {
+      if (place.kind == "effect") descriptors_.add(plugins[place.plugin].effects[place.index]);
+      if (place.kind == "base_model") descriptors_.add_base_model(plugins[place.plugin].base_models[place.index]);
+    }
+  }
+
+  const Place* find(const std::string& kind, const std::string& id) const {
+    const auto it = places.find(id);
+    return it == places.end() || it->second.kind != kind ? nullptr : &it->second;
+  }
+
+  std::vector<std::string> ids(const std::string& kind) const {
+    std::vector<std::string> found;
+    for (const auto& [id, place] : places) {
+      if (place.kind == kind) found.push_back(id);
+    }
+    return found;
   }
 
   const std::vector<const void*>& list(const std::string& kind) const override { return descriptors_.list(kind); }
 
   tl::expected<void, std::string> make(const std::string& kind, const std::string& id, const bf_host& host, void* made) override {
-    const Places& places = kind == "block" ? blocks : kind == "effect" ? effects : base_models;
-    const auto it = places.find(id);
-    if (it == places.end() || (kind != "block" && kind != "effect" && kind != "base_model")) {
-      return tl::unexpected(fmt::format("no plugin gives {} '{}'", kind == "base_model" ? "base model" : kind, id));
-    }
-    const PluginDescription& plugin = plugins[it->second.plugin];
+    const Place* place = find(kind, id);
+    if (place == nullptr) return tl::unexpected(fmt::format("no plugin gives {} '{}'", kind, id));
+    const PluginDescription& plugin = plugins[place->plugin];
     const auto bad = [&](const std::string& why) {
       return tl::unexpected(fmt::format("plugin '{}' ({}): {}", plugin.name, plugin.file, why));
     };
-    const auto library = library_of(it->second.plugin);
+    const auto library = library_of(place->plugin);
     if (!library) return bad(library.error());
     if (auto done = (*library)->create_part(kind, id, host, made); !done) return bad(done.error());
     return {};
   }
 
  private:
-  /// Enters what a plugin gives; refuses it when an earlier one gives any of it.
-  void enter(std::size_t index) {
-    PluginDescription& plugin = plugins[index];
-    const bool free = is_free(plugin, plugin.blocks, blocks, "block") && is_free(plugin, plugin.effects, effects, "effect") &&
-                      is_free(plugin, plugin.base_models, base_models, "base model");
-    if (!free) return;
-    for (std::size_t k = 0; k < plugin.blocks.size(); ++k) blocks.emplace(plugin.blocks[k].id, Place{index, k});
-    for (std::size_t k = 0; k < plugin.effects.size(); ++k) effects.emplace(plugin.effects[k].id, Place{index, k});
-    for (std::size_t k = 0; k < plugin.base_models.size(); ++k) base_models.emplace(plugin.base_models[k].id, Place{index, k});
+  /// Why a plugin is refused that gives what an earlier one gives, or "".
+  std::string repeats(const PluginDescription& plugin) const {
+    std::string why;
+    const auto look = [&](const auto& given, const char* what) {
+      for (const auto& one : given) {
+        const auto it = places.find(one.id);
+        if (it == places.end() || !why.empty()) continue;
+        why = fmt::format("gives {} '{}', which {} gives already", what, one.id, plugins[it->second.plugin].file);
+      }
+    };
+    look(plugin.blocks, "block");
+    look(plugin.effects, "effect");
+    look(plugin.base_models, "base model");
+    return why;
   }
 
-  template <class Description>
-  bool is_free(PluginDescription& plugin, const std::vector<Description>& given, const Places& taken, const char* what) const {
-    for (const Description& one : given) {
-      const auto it = taken.find(one.id);
-      if (it == taken.end()) continue;
-      plugin.refused = fmt::format("gives {} '{}', which {} gives already", what, one.id, plugins[it->second.plugin].file);
-      return false;
-    }
-    return true;
+  void enter(std::size_t index) {
+    const auto put = [&](const auto& given, const char* kind) {
+      for (std::size_t k = 0; k < given.size(); ++k) places.emplace(given[k].id, Place{kind, index, k});
+    };
+    put(plugins[index].blocks, "block");
+    put(plugins[index].effects, "effect");
+    put(plugins[index].base_models, "base_model");
   }
 
   tl::expected<const Library*, std::string> library_of(std::size_t index) {
@@ -213,17 +231,6 @@ struct Registry::State : PartShelf {
   PartDescriptors descriptors_;
 };
 
-namespace {
-
-template <class Places>
-std::vector<std::string> ids_of(const Places& places) {
-  std::vector<std::string> found;
-  for (const auto& [id, place] : places) found.push_back(id);
-  return found;
-}
-
-}  // namespace
-
 Registry::Registry(Options options) : state_(std::make_shared<State>()) { state_->take(find_plugins(options)); }
 
 Registry Registry::with(std::vector<PluginDescription> plugins) {
@@ -238,34 +245,28 @@ Registry& Registry::operator=(Registry&&) noexcept = default;
 
 const std::vector<PluginDescription>& Registry::plugins() const { return state_->plugins; }
 
-std::vector<std::string> Registry::ids() const { return ids_of(state_->blocks); }
-std::vector<std::string> Registry::effects() const { return ids_of(state_->effects); }
-std::vector<std::string> Registry::base_models() const { return ids_of(state_->base_models); }
+std::vector<std::string> Registry::ids() const { return state_->ids("block"); }
+std::vector<std::string> Registry::effects() const { return state_->ids("effect"); }
+std::vector<std::string> Registry::base_models() const { return state_->ids("base_model"); }
 
 const BlockDescription* Registry::find(const std::string& id) const {
-  const auto it = state_->blocks.find(id);
-  return it == state_->blocks.end() ? nullptr : &state_->plugins[it->second.plugin].blocks[it->second.index];
+  const auto* place = state_->find("block", id);
+  return place == nullptr ? nullptr : &state_->plugins[place->plugin].blocks[place->index];
+}
+
+const EffectDescription* Registry::find_effect(const std::string& id) const {
+  const auto* place = state_->find("effect", id);
+  return place == nullptr ? nullptr : &state_->plugins[place->plugin].effects[place->index];
+}
+
+const BlockDescription* Registry::find_base_model(const std::string& id) const {
+  const auto* place = state_->find("base_model", id);
+  return place == nullptr ? nullptr : &state_->plugins[place->plugin].base_models[place->index];
 }
 
 const PluginDescription* Registry::plugin_of(const std::string& id) const {
-  const auto it = state_->blocks.find(id);
-  return it == state_->blocks.end() ? nullptr : &state_->plugins[it->second.plugin];
-}
-
-const EffectDescription* Registry::find_effect(const std::string& id, const PluginDescription** plugin) const {
-  const auto it = state_->effects.find(id);
-  if (it == state_->effects.end()) return nullptr;
-  const PluginDescription& owner = state_->plugins[it->second.plugin];
-  if (plugin != nullptr) *plugin = &owner;
-  return &owner.effects[it->second.index];
-}
-
-const BlockDescription* Registry::find_base_model(const std::string& id, const PluginDescription** plugin) const {
-  const auto it = state_->base_models.find(id);
-  if (it == state_->base_models.end()) return nullptr;
-  const PluginDescription& owner = state_->plugins[it->second.plugin];
-  if (plugin != nullptr) *plugin = &owner;
-  return &owner.base_models[it->second.index];
+  const auto it = state_->places.find(id);
+  return it == state_->places.end() ? nullptr : &state_->plugins[it->second.plugin];
 }
 
 tl::expected<bf_block, std::string> Registry::create(const std::string& id, const bf_host& host) {

@@ -38,14 +38,15 @@ class Registry {
 
   /// The description of a block, or nullptr. Stable for the life of the registry.
   const BlockDescription* find(const std::string& id) const;
-  const PluginDescription* plugin_of(const std::string& id) const;
 
-  /// Ids of the effects and base models of all usable plugins, sorted.
+  /// The same for effects and base models.
   std::vector<std::string> effects() const;
   std::vector<std::string> base_models() const;
-  /// Their descriptions with the plugins that give them, or nullptr.
-  const EffectDescription* find_effect(const std::string& id, const PluginDescription** plugin = nullptr) const;
-  const BlockDescription* find_base_model(const std::string& id, const PluginDescription** plugin = nullptr) const;
+  const EffectDescription* find_effect(const std::string& id) const;
+  const BlockDescription* find_base_model(const std::string& id) const;
+
+  /// The plugin that gives a block, an effect or a base model, or nullptr.
+  const PluginDescription* plugin_of(const std::string& id) const;
   /// What hosts of blocks offer; lives beyond the registry.
   std::shared_ptr<PartShelf> parts() const;
 

@@ -24,7 +24,20 @@ int bodeflow_sizes_in_c(size_t* sizes) {
                         sizeof(bf_block),
                         sizeof(bf_factory),
                         sizeof(bf_plugin),
-                        sizeof(bf_elf_note)};
+                        sizeof(bf_elf_note),
+                        sizeof(bf_fit_parameter),
+                        sizeof(bf_place),
+                        sizeof(bf_signals),
+                        sizeof(bf_reaction),
+                        sizeof(bf_answer),
+                        sizeof(bf_effect_descriptor),
+                        sizeof(bf_situation),
+                        sizeof(bf_effect),
+                        sizeof(bf_base_facts),
+                        sizeof(bf_linear_plant),
+                        sizeof(bf_measured_response),
+                        sizeof(bf_base_model),
+                        sizeof(bf_parts)};
   memcpy(sizes, all, sizeof all);
   return (int)(sizeof all / sizeof all[0]);
 }

@@ -204,7 +204,7 @@ TEST_CASE("a plugin with a wrong description has no factories and says why, at e
     CHECK((plugin_factories<Probe, Wrong, Twin, OtherTwin>(&host.host, &count)) == nullptr);
     CHECK(count == 0);
     CHECK(host.error ==
-          "block 'wrong': id has not the form family.name (lower-case letters, digits, _)\nblock id 'example.twin' stands twice");
+          "block 'wrong': id has not the form family.name (lower-case letters, digits, _)\nid 'example.twin' stands twice");
   }
 }
 

@@ -36,7 +36,8 @@ constexpr const char* kMemory = "writes every sample of its outputs and nothing 
 
 TEST_CASE("a plugin that keeps the contract passes every check") {
   Options options;
-  options.settings = *parse_settings("good.mean: length = 10\ngood.mean: length = 333  # longer than a call\n");
+  options.settings =
+      *parse_settings("good.mean: length = 10\ngood.mean: length = 333  # longer than a call\ngood.cart: delay = 1 ms\n");
   const Report report = check_plugin(BODEFLOW_GOOD_PLUGIN, options);
   INFO(to_text(report));
   CHECK(report.passed());
@@ -92,6 +93,28 @@ TEST_CASE("each breach of the contract is found by its check") {
   CHECK(begins(of("bad.live_jump", "gives the same bits for every cut when a live parameter changes"),
                "output 'out', channel 0, value 10"));
   CHECK(begins(of("bad.unknown_unit", "has a sound descriptor"), "parameter 'speed': unit 'furlong/fortnight' is unknown"));
+}
+
+TEST_CASE("each breach of the contract of an effect or a base model is found by its check") {
+  const auto of = [](const char* part, const char* name) { return finding(check_plugin(BODEFLOW_BAD_PLUGIN, only(part)), name); };
+  constexpr const char* kLaw = "reacts finitely, from its arguments alone, and writes its own memory";
+  CHECK(of("bad.law_throws", kLaw) ==
+        "the reaction or a slope is not finite: effect 'bad.law_throws': react failed and gives no "
+        "number: too fast (told once)");
+  CHECK(of("bad.law_beyond", kLaw) == "writes beyond its memory of 2 numbers");
+  CHECK(of("bad.law_unwritten", kLaw) == "leaves numbers of its memory unwritten, or reads them");
+  CHECK(of("bad.law_crashes", kLaw) == "crashes: Segmentation fault (flow nan)");
+  CHECK(of("bad.start_outside", "states sound parameters and starts inside their bounds") ==
+        "starts 'k' at 1.000000, outside of its bounds");
+  CHECK(of("bad.impure_map", "maps samples finitely, and the same ones alike") ==
+        "gives other samples when the same ones come again");
+  CHECK(begins(of("bad.one_sided", "has a finite and real transfer at every frequency"), "is no real law: at -0.001 Hz"));
+  CHECK(of("bad.other_response", "has the response of its state space") == "the response is not that of its state space");
+  CHECK(of("bad.other_response", "gives starts from a measured response") == "gives a start of 2 values for 1 parameters");
+  CHECK(of("bad.wrong_sizes", "gives a finite plant of the sizes that it states") ==
+        "gives no plant: base model 'bad.wrong_sizes': state_space failed and gives no number: a matrix does not have the size "
+        "that "
+        "the plant states (told once)");
 }
 
 #if !defined(BODEFLOW_SANITIZED)

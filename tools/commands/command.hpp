@@ -41,6 +41,7 @@ struct GraphOptions {
 void add_run(CLI::App& app, Session& session);
 void add_identify(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
+void add_trace(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_plan(CLI::App& app, Session& session);
 void add_graph(CLI::App& app, Session& session);

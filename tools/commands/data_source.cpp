@@ -34,7 +34,8 @@ bool is_touchstone(const std::string& ending) {
 /// What a source block says of a file when it is set up: nothing where it takes it.
 struct Probe {
   std::string refusal;
-  std::string found;  ///< what it logged
+  std::string found;        ///< what it logged
+  double duration_s = 0.0;  ///< of its longest stream
 };
 
 Probe probe(const std::string& block, Registry& registry) {
@@ -45,7 +46,12 @@ Probe probe(const std::string& block, Registry& registry) {
     if (level == BF_LOG_INFO) probe.found = text;
   });
   const auto prepared = phases::prepare(graph->phases.front(), registry, services.host(), {});
-  if (!prepared) probe.refusal = without_block(prepared.error().front().text, "data");
+  if (!prepared) {
+    probe.refusal = without_block(prepared.error().front().text, "data");
+    return probe;
+  }
+  for (const StreamFacts& facts : prepared->facts.blocks.front().outputs)
+    if (facts.rate.known()) probe.duration_s = std::max(probe.duration_s, static_cast<double>(facts.length) / facts.rate.hz());
   return probe;
 }
 
@@ -71,6 +77,12 @@ std::string data_block(const DataOptions& options, DataKind kind) {
     text += fmt::format(", input: {}, output: {}", yaml_text(options.inputs), yaml_text(options.outputs));
   if (!options.rate.empty()) text += fmt::format(", rate: {}", yaml_text(options.rate));
   return text + "}";
+}
+
+tl::expected<double, std::string> duration_of(const DataOptions& options, Registry& registry) {
+  const Probe found = probe(data_block(options, DataKind::time_series), registry);
+  if (!found.refusal.empty()) return tl::unexpected(found.refusal);
+  return found.duration_s;
 }
 
 void add_columns_to(CLI::App& command, DataOptions& options) {

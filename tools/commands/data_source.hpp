@@ -26,6 +26,9 @@ enum class DataKind { time_series, frequency_response };
 /// Error: no such file; samples without the names of columns (with those that the file has).
 tl::expected<DataKind, std::string> data_kind(const DataOptions& options, Registry& registry);
 
+/// How long the samples over time in the file last. Error: why they can't be read.
+tl::expected<double, std::string> duration_of(const DataOptions& options, Registry& registry);
+
 /// The line of a graph that makes the block `data` of it.
 std::string data_block(const DataOptions& options, DataKind kind);
 

@@ -83,48 +83,107 @@ void print_ports(const BlockDescription& block) {
   }
 }
 
-void print(const BlockDescription& block, const PluginDescription& plugin) {
-  fmt::print("{}  {}\n", bold(block.id), block.summary);
-  if (!block.doc.empty()) fmt::print("\n{}\n", block.doc);
-  fmt::print("\n{}\n", bold("Ports"));
-  print_ports(block);
-  if (!block.parameters.empty()) fmt::print("\n{}\n", bold("Parameters"));
+template <class Description>
+void print_head(const Description& one, const char* kind) {
+  fmt::print("{}  {}{}\n", bold(one.id), dim(kind), one.summary);
+  if (!one.doc.empty()) fmt::print("\n{}\n", one.doc);
+}
+
+void print_foot(const std::string& references, const PluginDescription& plugin) {
+  if (!references.empty()) fmt::print("\n{}\n{}\n", bold("References"), references);
+  fmt::print("\n{}\n", dim(fmt::format("plugin {} {}, {}", plugin.name, plugin.version, plugin.file)));
+}
+
+void print_parameters(const BlockDescription& block) {
   for (const auto& parameter : block.parameters) {
     fmt::print("  {:<16} {}{}{}; {}{}\n", parameter.name, type_name(parameter),
                parameter.unit.empty() ? "" : " [" + parameter.unit + "]", range_text(parameter), default_text(parameter),
                parameter.live ? "; live" : "");
     if (!parameter.doc.empty()) fmt::print("  {:<16} {}\n", "", dim(parameter.doc));
   }
+}
+
+void print(const BlockDescription& block, const PluginDescription& plugin) {
+  print_head(block, "");
+  fmt::print("\n{}\n", bold("Ports"));
+  print_ports(block);
+  if (!block.parameters.empty()) fmt::print("\n{}\n", bold("Parameters"));
+  print_parameters(block);
   std::vector<std::string> traits;
   if (block.realtime_safe) traits.emplace_back("real-time safe");
   if (block.in_place) traits.emplace_back("in place");
   if (block.asynchronous) traits.emplace_back("asynchronous");
   if (!traits.empty()) fmt::print("\n{}\n", fmt::join(traits, ", "));
-  if (!block.references.empty()) fmt::print("\n{}\n{}\n", bold("References"), block.references);
-  fmt::print("\n{}\n", dim(fmt::format("plugin {} {}, {}", plugin.name, plugin.version, plugin.file)));
+  print_foot(block.references, plugin);
+}
+
+void print_base_model(const BlockDescription& model, const PluginDescription& plugin) {
+  print_head(model, "base model: ");
+  if (!model.parameters.empty()) fmt::print("\n{}\n", bold("Declared"));
+  print_parameters(model);
+  print_foot(model.references, plugin);
+}
+
+/// How an effect acts, in words.
+std::string acts_text(const EffectDescription& effect) {
+  switch (effect.acts) {
+    case Acts::law:
+      return fmt::format("a law at a {}", fmt::join(effect.kinds, ", "));
+    case Acts::immittance:
+      return fmt::format("an impedance at a {}", fmt::join(effect.kinds, ", "));
+    case Acts::input:
+      return "on the samples of the input";
+    case Acts::output:
+      return "on the samples of the output";
+    case Acts::series:
+      return "multiplies the response";
+    case Acts::parallel:
+      return "adds to the response";
+    case Acts::delay:
+      return "a delay";
+    case Acts::tone:
+      return "sinusoids in the output that the input does not make";
+  }
+  return "";
+}
+
+void print(const EffectDescription& effect, const PluginDescription& plugin) {
+  print_head(effect, "effect: ");
+  fmt::print("\n  {:<16} {}\n", "acts", acts_text(effect));
+  if (effect.nonstationary) fmt::print("  {:<16} on the time since the record began\n", "depends");
+  if (!effect.equivalents.empty())
+    fmt::print("  {:<16} {}{}\n", "acts alike", fmt::join(effect.equivalents, ", "),
+               effect.separation.empty() ? "" : "; told apart by: " + effect.separation);
+  print_foot(effect.references, plugin);
 }
 
 int describe(const Session& session, const std::string& id, bool as_json) {
   const Registry registry = session.open_registry();
-  const BlockDescription* block = registry.find(id);
-  if (block == nullptr) {
-    say_error(fmt::format("unknown block '{}'{}; 'bodeflow plugins' lists them", id, did_you_mean(id, registry.ids())));
+  const PluginDescription* plugin = registry.plugin_of(id);
+  if (plugin == nullptr) {
+    std::vector<std::string> all = registry.ids();
+    for (const auto& more : {registry.effects(), registry.base_models()}) all.insert(all.end(), more.begin(), more.end());
+    say_error(fmt::format("no block, effect or base model '{}'{}; 'bodeflow plugins' lists them", id, did_you_mean(id, all)));
     return kUsage;
   }
-  if (as_json)
-    print_json(to_json(*block));
-  else
-    print(*block, *registry.plugin_of(id));
+  if (const EffectDescription* effect = registry.find_effect(id)) {
+    as_json ? print_json(to_json(*effect)) : print(*effect, *plugin);
+  } else if (const BlockDescription* model = registry.find_base_model(id)) {
+    as_json ? print_json(base_model_to_json(*model)) : print_base_model(*model, *plugin);
+  } else {
+    as_json ? print_json(to_json(*registry.find(id))) : print(*registry.find(id), *plugin);
+  }
   return kDone;
 }
 
 }  // namespace
 
 void add_describe(CLI::App& app, Session& session) {
-  auto* command = app.add_subcommand("describe", "Tell what a block does: ports, parameters with units and ranges, references");
+  auto* command = app.add_subcommand(
+      "describe", "Tell what a block, an effect or a base model is: ports, parameters with units and ranges, references");
   auto id = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
-  command->add_option("id", *id, "Block, such as spectrum.averaging_dft")->required();
+  command->add_option("id", *id, "Block, effect or base model, such as spectrum.averaging_dft")->required();
   command->add_flag("--json", *json, "Print JSON");
   command->callback([&session, id, json] { session.action = [&session, id, json] { return describe(session, *id, *json); }; });
 }

@@ -34,7 +34,9 @@ Finding plugins(const Registry& registry) {
       refused += fmt::format("\n{:>24}{}: {}", "", plugin.file, plugin.refused);
   }
   if (usable == 0) return {"plugins", "bad", "none", "give --path DIR or set BODEFLOW_PLUGIN_PATH" + refused};
-  return {"plugins", refused.empty() ? "good" : "bad", fmt::format("{} usable, {} blocks", usable, registry.ids().size()),
+  return {"plugins", refused.empty() ? "good" : "bad",
+          fmt::format("{} usable, {} blocks, {} effects, {} base models", usable, registry.ids().size(),
+                      registry.effects().size(), registry.base_models().size()),
           refused.empty() ? "" : "refused:" + refused};
 }
 

@@ -8,6 +8,18 @@
 namespace bodeflow::tools {
 namespace {
 
+template <class Description>
+nlohmann::ordered_json listed(const std::vector<Description>& descriptions) {
+  nlohmann::ordered_json list = nlohmann::json::array();
+  for (const auto& one : descriptions) list.push_back({{"id", one.id}, {"summary", one.summary}});
+  return list;
+}
+
+template <class Description>
+void print_list(const std::vector<Description>& descriptions, const char* kind) {
+  for (const auto& one : descriptions) fmt::print("  {:<32} {}{}\n", one.id, dim(kind), one.summary);
+}
+
 int list_plugins(const Session& session, bool as_json) {
   const Registry registry = session.open_registry();
   nlohmann::ordered_json all = nlohmann::json::array();
@@ -15,20 +27,22 @@ int list_plugins(const Session& session, bool as_json) {
   for (const auto& plugin : registry.plugins()) {
     refused |= !plugin.refused.empty();
     if (as_json) {
-      nlohmann::ordered_json blocks = nlohmann::json::array();
-      for (const auto& block : plugin.blocks) blocks.push_back({{"id", block.id}, {"summary", block.summary}});
       all.push_back({{"name", plugin.name},
                      {"version", plugin.version},
                      {"file", plugin.file},
                      {"build", plugin.build},
                      {"sha256", plugin.sha256},
                      {"refused", plugin.refused},
-                     {"blocks", blocks}});
+                     {"blocks", listed(plugin.blocks)},
+                     {"effects", listed(plugin.effects)},
+                     {"base_models", listed(plugin.base_models)}});
     } else if (!plugin.refused.empty()) {
       say_warning(fmt::format("{}: {}", plugin.file, plugin.refused));
     } else {
       fmt::print("{} {}  {}\n", bold(plugin.name), plugin.version, dim(plugin.file));
-      for (const auto& block : plugin.blocks) fmt::print("  {:<32} {}\n", block.id, block.summary);
+      print_list(plugin.blocks, "");
+      print_list(plugin.effects, "effect: ");
+      print_list(plugin.base_models, "base model: ");
     }
   }
   if (as_json) print_json(all);
@@ -39,7 +53,8 @@ int list_plugins(const Session& session, bool as_json) {
 }  // namespace
 
 void add_plugins(CLI::App& app, Session& session) {
-  auto* command = app.add_subcommand("plugins", "List the plugins and their blocks, and why a file was refused");
+  auto* command =
+      app.add_subcommand("plugins", "List the plugins with their blocks, effects and base models, and why a file was refused");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON");
   command->callback([&session, json] { session.action = [&session, json] { return list_plugins(session, *json); }; });

@@ -5,6 +5,7 @@
 
 #include "checks.hpp"
 #include "descriptor_check.hpp"
+#include "part_checks.hpp"
 #include "plugin_file.hpp"
 
 namespace bodeflow::testing {
@@ -89,6 +90,7 @@ class Suite {
     if (!check("", "", "has an ELF note that tells what it is", [&](const Step&) { read_note(report_.file); })) return;
     if (!check("", "", "loads and gives its factories", [&](const Step&) { load_plugin(report_.file); })) return;
     const LoadedPlugin plugin = load_plugin(report_.file);
+    TestHost::offer_parts(plugin);
     check("", "", "has a sound entry", [&](const Step&) {
       auto problems = plugin_problems(*plugin.plugin, plugin.factories, plugin.count);
       const bf_elf_note note = read_note(report_.file);
@@ -101,7 +103,10 @@ class Suite {
     });
     for (std::uint32_t i = 0; i < plugin.count; ++i) {
       const bf_factory& f = *plugin.factories[i];
-      if (std::string(f.kind) == "block" && (options_.block.empty() || options_.block == f.id)) block(f);
+      if (!options_.block.empty() && options_.block != f.id) continue;
+      if (std::string_view(f.kind) == "block") block(f);
+      if (std::string_view(f.kind) == "effect") effect(f);
+      if (std::string_view(f.kind) == "base_model") base_model(f);
     }
   }
 
@@ -130,6 +135,34 @@ class Suite {
     const Setting base = settings.front();
     for (const Setting& setting : settings) test(factory, setting, true);
     for (const Setting& setting : variants(*descriptor, base)) test(factory, setting, false);
+  }
+
+  void effect(const bf_factory& factory) {
+    const bool sound = check(factory.id, "", "has a sound descriptor", [&](const Step&) {
+      const auto problems = effect_problems(factory);
+      if (!problems.empty()) fail(joined(problems));
+    });
+    if (!sound) return;
+    for (const PartCheck& one : effect_checks(factory)) check(factory.id, "", one.name, one.run);
+  }
+
+  void base_model(const bf_factory& factory) {
+    const bool sound = check(factory.id, "", "has a sound descriptor", [&](const Step&) {
+      const auto problems = descriptor_problems(factory);
+      if (!problems.empty()) fail(joined(problems));
+    });
+    if (!sound) return;
+    std::vector<Setting> settings;
+    if (const auto given = options_.settings.find(factory.id); given != options_.settings.end()) settings = given->second;
+    const bool needs = needs_setting(*static_cast<const bf_block_descriptor*>(factory.descriptor));
+    if (settings.empty() || !needs) settings.insert(settings.begin(), Setting{});
+    for (const Setting& setting : settings) {
+      const std::string text = text_of(setting);
+      Case c;
+      if (!check(factory.id, text, "can be set up", [&](const Step&) { make_case(factory, setting); })) continue;
+      for (const PartCheck& one : base_checks(factory, make_case(factory, setting).values))
+        check(factory.id, text, one.name, one.run);
+    }
   }
 
   /// The base setting with one switch or choice turned, more channels, complex samples, unconnected inputs.

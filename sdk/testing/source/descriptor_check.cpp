@@ -1,5 +1,6 @@
 #include "descriptor_check.hpp"
 
+#include <bodeflow/effect_type.hpp>
 #include <bodeflow/units.hpp>
 #include <bodeflow/utf8.hpp>
 #include <cmath>
@@ -134,17 +135,39 @@ std::vector<std::string> plugin_problems(const bf_plugin& plugin, const bf_facto
     const bf_factory* f = factories[i];
     if (f == nullptr || f->kind == nullptr || f->id == nullptr || f->create == nullptr) {
       problems.push_back("factory " + std::to_string(i) + " is incomplete");
-    } else if (!ids.insert(std::string(f->kind) + " " + f->id).second) {
+    } else if (!ids.insert(f->id).second) {
       problems.push_back(std::string("id '") + f->id + "' stands twice");
     }
   }
   return problems;
 }
 
+std::vector<std::string> effect_problems(const bf_factory& factory) {
+  const auto* effect = static_cast<const bf_effect_descriptor*>(factory.descriptor);
+  if (effect == nullptr) return {"descriptor is a null pointer"};
+  if (effect->struct_size < sizeof *effect)
+    return {"struct_size " + std::to_string(effect->struct_size) + " is smaller than the ABI's"};
+  if (effect->id == nullptr || std::string(effect->id) != factory.id) return {"factory and descriptor have other ids"};
+  for (const char* text : {effect->id, effect->summary, effect->doc, effect->references, effect->separation}) {
+    if (text != nullptr && !is_text(text)) return {"a text is not UTF-8"};
+  }
+  if (effect->acts < BF_ACTS_LAW || effect->acts > BF_ACTS_TONE)
+    return {"way to act " + std::to_string(effect->acts) + " is unknown"};
+  if ((effect->kind_count != 0 && effect->kinds == nullptr) || (effect->equivalent_count != 0 && effect->equivalents == nullptr))
+    return {"the kinds of places or the equivalents are a null pointer"};
+  try {
+    (void)EffectType(effect_description(*effect));
+  } catch (const Failure& failure) {
+    return {failure.what()};
+  }
+  return {};
+}
+
 std::vector<std::string> descriptor_problems(const bf_factory& factory) {
   const auto* block = static_cast<const bf_block_descriptor*>(factory.descriptor);
   if (block == nullptr) return {"descriptor is a null pointer"};
   std::vector<std::string> problems = Checker(*block).run();
+  if (std::string(factory.kind) == "base_model" && block->port_count != 0) problems.push_back("a base model has no ports");
   if (block->id != nullptr && std::string(block->id) != factory.id) {
     problems.push_back(std::string("factory has the id '") + factory.id + "', descriptor '" + block->id + "'");
   }

@@ -1,5 +1,6 @@
 #include "test_host.hpp"
 
+#include <algorithm>
 #include <bodeflow/testing/hook.hpp>
 #include <cstdlib>
 #include <cstring>
@@ -35,6 +36,24 @@ class HookRest {
   int was_armed_ = 0;
 };
 
+/// The effects and base models that hosts offer, ordered by id.
+struct Offered {
+  struct Kind {
+    std::vector<const bf_factory*> factories;
+    std::vector<const void*> descriptors;
+  };
+  Kind effects, base_models, none;
+
+  const Kind& of(const char* kind) const {
+    return std::strcmp(kind, "effect") == 0 ? effects : std::strcmp(kind, "base_model") == 0 ? base_models : none;
+  }
+};
+
+Offered& offered() {
+  static Offered parts;
+  return parts;
+}
+
 OwnedRecord* owner(const bf_record* record) { return reinterpret_cast<OwnedRecord*>(const_cast<bf_record*>(record)); }
 
 }  // namespace
@@ -68,11 +87,30 @@ struct HostCalls {
     return self.paths_.emplace_back(whole.string()).c_str();
   }
 
+  static void log(const bf_host* host, std::int32_t level, const char* text) {
+    if (level >= BF_LOG_WARNING) of(host).log_ = text;
+  }
+
+  static const void* const* list_parts(const bf_host*, const char* kind, std::uint32_t* count) {
+    const Offered::Kind& found = offered().of(kind);
+    *count = static_cast<std::uint32_t>(found.descriptors.size());
+    return found.descriptors.data();
+  }
+  static std::int32_t create_part(const bf_host* host, const char* kind, const char* id, void* made) {
+    for (const bf_factory* factory : offered().of(kind).factories) {
+      if (std::strcmp(factory->id, id) == 0) return factory->create(factory, host, made);
+    }
+    of(host).error_ = std::string("the plugin gives no ") + kind + " '" + id + "'";
+    return BF_FAILED;
+  }
+
   static const void* extension(const bf_host*, const char* id) {
-    static const bf_log kLog{sizeof(bf_log), [](const bf_host*, std::int32_t, const char*) {}};
+    static const bf_log kLog{sizeof(bf_log), &log};
     static const bf_files kFiles{sizeof(bf_files), &note_input, &output_path};
+    static const bf_parts kParts{sizeof(bf_parts), &list_parts, &create_part};
     if (std::strcmp(id, BF_EXTENSION_LOG) == 0) return &kLog;
     if (std::strcmp(id, BF_EXTENSION_FILES) == 0) return &kFiles;
+    if (std::strcmp(id, BF_EXTENSION_PARTS) == 0) return &kParts;
     return nullptr;
   }
 
@@ -102,6 +140,21 @@ TestHost::TestHost() {
   c_.record_create = &HostCalls::record_create;
   c_.record_retain = &HostCalls::record_retain;
   c_.record_release = &HostCalls::record_release;
+}
+
+void TestHost::offer_parts(const LoadedPlugin& plugin) {
+  Offered parts;
+  for (std::uint32_t i = 0; i < plugin.count; ++i) {
+    const bf_factory* f = plugin.factories[i];
+    if (std::strcmp(f->kind, "effect") == 0) parts.effects.factories.push_back(f);
+    if (std::strcmp(f->kind, "base_model") == 0) parts.base_models.factories.push_back(f);
+  }
+  for (Offered::Kind* kind : {&parts.effects, &parts.base_models}) {
+    std::sort(kind->factories.begin(), kind->factories.end(),
+              [](const bf_factory* a, const bf_factory* b) { return std::strcmp(a->id, b->id) < 0; });
+    for (const bf_factory* f : kind->factories) kind->descriptors.push_back(f->descriptor);
+  }
+  offered() = std::move(parts);
 }
 
 TestHost::~TestHost() {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "plugin_file.hpp"
+
 namespace bodeflow::testing {
 
 /// A host for one block under test: keeps its error text, counts its records, gives it files in a folder of its own.
@@ -23,6 +25,11 @@ class TestHost {
   std::string take_error();
   /// Records that are made and neither sent nor released.
   int records_alive() const { return records_alive_; }
+  /// The last warning or error that was logged.
+  const std::string& log() const { return log_; }
+
+  /// From here on hosts offer the effects and base models of this plugin, as the real host does with those of all.
+  static void offer_parts(const LoadedPlugin& plugin);
 
   static void release(const bf_record* record);
 
@@ -30,6 +37,7 @@ class TestHost {
   friend struct HostCalls;
   bf_host c_{};
   std::string error_;
+  std::string log_;
   std::string folder_;
   std::list<std::string> paths_;
   int records_alive_ = 0;

@@ -27,9 +27,8 @@ TEST_CASE("a plugin gives blocks, effects and base models at once") {
   CHECK(registry.ids() == std::vector<std::string>{"parts.asker"});
   CHECK(registry.effects() == std::vector<std::string>{"parts.drag", "parts.gain", "parts.lag"});
   CHECK(registry.base_models() == std::vector<std::string>{"parts.mass"});
-  const PluginDescription* plugin = nullptr;
-  REQUIRE(registry.find_effect("parts.drag", &plugin) != nullptr);
-  CHECK(plugin == &registry.plugins()[0]);
+  REQUIRE(registry.find_effect("parts.drag") != nullptr);
+  CHECK(registry.plugin_of("parts.drag") == &registry.plugins()[0]);
   CHECK(registry.find_effect("parts.mass") == nullptr);
   REQUIRE(registry.find_base_model("parts.mass") != nullptr);
   CHECK(registry.find_base_model("parts.mass")->parameters.size() == 4);
@@ -42,12 +41,12 @@ TEST_CASE("a plugin of effects alone is usable") {
   CHECK(registry.effects() == std::vector<std::string>{"lone.offset"});
 }
 
-TEST_CASE("of two plugins with the same effect the later is refused, with its blocks") {
-  const Registry registry(options({fixture("only_effect"), fixture("same_effect"), fixture("parts"), fixture("other_drag")}));
+TEST_CASE("of two plugins with the same effect, or an effect named as a block, the later is refused") {
+  const Registry registry(options({fixture("only_effect"), fixture("same_effect"), fixture("parts"), fixture("like_a_block")}));
   CHECK(registry.plugins()[1].refused ==
         "gives effect 'lone.offset', which " + std::filesystem::canonical(fixture("only_effect")).string() + " gives already");
   CHECK(registry.plugins()[3].refused ==
-        "gives effect 'parts.drag', which " + std::filesystem::canonical(fixture("parts")).string() + " gives already");
+        "gives effect 'parts.asker', which " + std::filesystem::canonical(fixture("parts")).string() + " gives already");
 }
 
 TEST_CASE("a plugin with a broken effect or base model is refused") {

@@ -1,74 +1,23 @@
 // What blocks get of the effects and base models of all plugins: through the SDK, over the C border.
 #include <dlfcn.h>
 
-#include <bodeflow/parts.hpp>
 #include <bodeflow/record.hpp>
 #include <cmath>
 
 #include "catch.hpp"
-#include "plugins/registry.hpp"
+#include "runtime/plugins/shelf.hpp"
 
 using namespace bodeflow;
+using namespace bodeflow::test;
 
 namespace {
 
 std::filesystem::path fixture(const std::string& name) { return std::filesystem::path(BODEFLOW_FIXTURES) / (name + ".so"); }
 
-/// The parts of some plugins, as a block has them; the registry itself is gone.
-class Shelf {
- public:
-  explicit Shelf(const std::vector<std::string>& names) {
-    Registry::Options options;
-    for (const auto& name : names) options.path.push_back(fixture(name));
-    options.probe_command = BODEFLOW_PROBE_HELPER;
-    const Registry registry(options);
-    for (const auto& plugin : registry.plugins()) refused += plugin.refused;
-    shelf_ = registry.parts();
-    host_.struct_size = sizeof host_;
-    host_.context = this;
-    host_.error = [](const bf_host* h, const char* text) { of(h).error = text; };
-    host_.extension = [](const bf_host*, const char* id) -> const void* {
-      static const bf_log kLog{sizeof(bf_log), [](const bf_host* h, std::int32_t level, const char* text) {
-                                of(h).log.push_back(std::to_string(level) + " " + text);
-                              }};
-      static const bf_parts kParts{sizeof(bf_parts), list, create};
-      const std::string name(id);
-      return name == BF_EXTENSION_LOG ? static_cast<const void*>(&kLog) : name == BF_EXTENSION_PARTS ? &kParts : nullptr;
-    };
-  }
-  Shelf(const Shelf&) = delete;
-  Shelf& operator=(const Shelf&) = delete;
-
-  Parts parts() const { return Parts(host_); }
-
-  std::string refused, error;
-  std::vector<std::string> log;
-
- private:
-  static Shelf& of(const bf_host* host) { return *static_cast<Shelf*>(host->context); }
-  static const void* const* list(const bf_host* host, const char* kind, std::uint32_t* count) {
-    const auto& found = of(host).shelf_->list(kind);
-    *count = static_cast<std::uint32_t>(found.size());
-    return found.data();
-  }
-  static std::int32_t create(const bf_host* host, const char* kind, const char* id, void* made) {
-    const auto done = of(host).shelf_->make(kind, id, *host, made);
-    if (!done) of(host).error = done.error();
-    return done ? BF_OK : BF_FAILED;
-  }
-
-  std::shared_ptr<PartShelf> shelf_;
-  bf_host host_{};
-};
-
-template <class Work>
-std::string failure_of(Work&& work) {
-  try {
-    work();
-  } catch (const Failure& failure) {
-    return failure.what();
-  }
-  return "no failure";
+std::vector<std::filesystem::path> fixtures(const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& name : names) files.push_back(fixture(name));
+  return files;
 }
 
 Situation full_situation() {
@@ -90,7 +39,7 @@ Situation full_situation() {
 }  // namespace
 
 TEST_CASE("the effects of all plugins are listed by their ids, with all that they say of themselves") {
-  const Shelf shelf({"parts", "good", "only_effect"});
+  const Shelf shelf(fixtures({"parts", "good", "only_effect"}));
   CHECK(shelf.refused.empty());
   const auto effects = shelf.parts().effects();
   REQUIRE(effects.size() == 4);
@@ -117,7 +66,7 @@ TEST_CASE("the effects of all plugins are listed by their ids, with all that the
 }
 
 TEST_CASE("base models are listed with what can be declared") {
-  const Shelf shelf({"parts"});
+  const Shelf shelf(fixtures({"parts"}));
   const auto models = shelf.parts().base_models();
   REQUIRE(models.size() == 1);
   CHECK(models[0].id == "parts.mass");
@@ -136,7 +85,7 @@ TEST_CASE("a plugin is loaded when the first of its parts is made, not before") 
     if (library != nullptr) dlclose(library);
     return library != nullptr;
   };
-  const Shelf shelf({"parts", "only_effect"});
+  const Shelf shelf(fixtures({"parts", "only_effect"}));
   CHECK(shelf.parts().effects().size() == 4);
   CHECK_FALSE(loaded());
   const auto offset = shelf.parts().effect("lone.offset");
@@ -146,7 +95,7 @@ TEST_CASE("a plugin is loaded when the first of its parts is made, not before") 
 }
 
 TEST_CASE("an effect sees its whole situation across the border, and gives parameters, starts and words") {
-  const Shelf shelf({"parts"});
+  const Shelf shelf(fixtures({"parts"}));
   const auto drag = shelf.parts().effect("parts.drag");
   Situation s = full_situation();
   CHECK(drag->refuses(s).empty());
@@ -172,7 +121,7 @@ TEST_CASE("an effect sees its whole situation across the border, and gives param
 }
 
 TEST_CASE("laws, maps, transfers, delays and tones give the same numbers across the border") {
-  const Shelf shelf({"parts"});
+  const Shelf shelf(fixtures({"parts"}));
   const auto drag = shelf.parts().effect("parts.drag");
   const double p[] = {2.0, 0.0}, memory[] = {5.0, 0.0};
   double next[] = {0.0, 0.0};
@@ -195,7 +144,7 @@ TEST_CASE("laws, maps, transfers, delays and tones give the same numbers across 
 }
 
 TEST_CASE("an effect that throws gives no number and is told once, whatever it throws") {
-  const Shelf shelf({"parts"});
+  const Shelf shelf(fixtures({"parts"}));
   const auto drag = shelf.parts().effect("parts.drag");
   const double p[] = {2.0, 0.0}, memory[] = {0.0, 0.0};
   double next[2];
@@ -222,7 +171,7 @@ TEST_CASE("an effect that throws gives no number and is told once, whatever it t
 }
 
 TEST_CASE("a base model takes declared values with units and gives them across the border") {
-  const Shelf shelf({"parts"});
+  const Shelf shelf(fixtures({"parts"}));
   const auto mass = shelf.parts().base_model("parts.mass", {"fc = 2 kHz", "hold=first_order", "lengths=[1 mm, 2]"});
   CHECK(mass->filter_hz() == 2000.0);
   CHECK(mass->timing().hold == Hold::first_order);
@@ -251,7 +200,7 @@ TEST_CASE("a base model takes declared values with units and gives them across t
 }
 
 TEST_CASE("plants, responses and laws of a base model pass the border") {
-  const Shelf shelf({"parts"});
+  const Shelf shelf(fixtures({"parts"}));
   const auto mass = shelf.parts().base_model("parts.mass", {"corner=1"});
   const double v[] = {4.0, 2.0}, known[] = {6.0};
   LinearPlant plant;
@@ -283,7 +232,7 @@ TEST_CASE("plants, responses and laws of a base model pass the border") {
 }
 
 TEST_CASE("a black box is handed the record of its model") {
-  const Shelf shelf({"parts"});
+  const Shelf shelf(fixtures({"parts"}));
   RecordBuilder model("transfer_function");
   const auto bytes = model.bytes();
   const auto made = shelf.parts().base_model("parts.mass", {"corner=1"}, RecordView(bytes.data()));
@@ -291,7 +240,7 @@ TEST_CASE("a black box is handed the record of its model") {
 }
 
 TEST_CASE("a wrong declaration is refused with what is allowed and what was meant") {
-  const Shelf shelf({"parts"});
+  const Shelf shelf(fixtures({"parts"}));
   const auto why = [&](const std::vector<std::string>& declarations) {
     return failure_of([&] { (void)shelf.parts().base_model("parts.mass", declarations); });
   };
@@ -312,7 +261,7 @@ TEST_CASE("a wrong declaration is refused with what is allowed and what was mean
 }
 
 TEST_CASE("an id that no plugin gives is refused with the nearest one") {
-  const Shelf shelf({"parts"});
+  const Shelf shelf(fixtures({"parts"}));
   CHECK(failure_of([&] { (void)shelf.parts().effect("parts.darg"); }) ==
         "no plugin gives the effect 'parts.darg' (did you mean 'parts.drag'?)");
   CHECK(failure_of([&] { (void)shelf.parts().effect("lag"); }) == "no plugin gives the effect 'lag' (did you mean 'parts.lag'?)");
@@ -329,12 +278,12 @@ TEST_CASE("a host without parts has none") {
 }
 
 TEST_CASE("a part without its functions, or one that its plugin refuses, is refused in its turn") {
-  const Shelf incomplete({"part_base"});
+  const Shelf incomplete(fixtures({"part_base"}));
   CHECK(failure_of([&] { (void)incomplete.parts().base_model("broken.part"); }) ==
         "the plugin made a base model without all its functions");
-  const Shelf empty({"part_plain"});
+  const Shelf empty(fixtures({"part_plain"}));
   CHECK(failure_of([&] { (void)empty.parts().effect("broken.part"); }) == "the plugin made an effect without all its functions");
-  const Shelf refuses({"part_refuses"});
+  const Shelf refuses(fixtures({"part_refuses"}));
   CHECK_THROWS_AS(refuses.parts().effect("broken.part"), Services::HostRefused);
 }
 

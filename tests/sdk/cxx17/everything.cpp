@@ -2,6 +2,7 @@
 #include <bodeflow/block.hpp>
 #include <bodeflow/error.hpp>
 #include <bodeflow/number.hpp>
+#include <bodeflow/parts.hpp>
 #include <bodeflow/rate.hpp>
 #include <bodeflow/record.hpp>
 #include <bodeflow/units.hpp>

@@ -9,7 +9,10 @@ namespace bodeflow::residual {
 namespace {
 
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9;
-constexpr int kTrials = 6;
+constexpr double kRaisedDamping = 1e-4;
+constexpr int kTrials = 5;
+// A step that gains less than this part of what all have gained is the last.
+constexpr double kLittle = 0.005;
 
 // A coordinate that says next to nothing must not be sent away by rounding: a factor of e^4 a step, or 1000 typical sizes.
 constexpr double kFarthestFactor = 4.0, kFarthestSizes = 1e3;
@@ -69,34 +72,32 @@ double promised_cost(const Approach& a) {
   return step.allFinite() ? (a.residual + a.jacobian * step).squaredNorm() : a.cost;
 }
 
-void approach(const FitProblem& problem, int steps, double least_fall, Approach& a) {
+void approach(const FitProblem& problem, int steps, double least_fall, bool thorough, Approach& a) {
   if (!a.started) return;
+  const double start = a.cost;
   double damping = kFirstDamping;
   bool fresh = false;
   for (int n = 0; n < steps; ++n) {
-    double fall = 0.0;
-    bool moved = false;
-    for (int trial = 0; trial < kTrials && !moved; ++trial) {
+    const double before = a.cost;
+    for (int trial = 0; trial < kTrials && a.cost == before; ++trial) {
       const Eigen::VectorXd step = limited(problem, step_of(a.jacobian, a.residual, damping));
       const Eigen::VectorXd next = a.at + step;
       const Eigen::VectorXd residual = problem.residual(next);
       const double cost = residual.allFinite() ? residual.squaredNorm() : std::numeric_limits<double>::infinity();
-      if (cost < a.cost) {
-        update(step, residual - a.residual, a.jacobian);
-        fall = a.cost - cost;
-        a.at = next;
-        a.residual = residual;
-        a.cost = cost;
-        damping = std::max(damping / 10.0, kLeastDamping);
-        moved = true;
-      } else {
-        damping = std::max(damping, 1e-4) * 10.0;
+      if (!(cost < a.cost)) {
+        damping = std::max(damping, kRaisedDamping) * 10.0;
+        continue;
       }
+      update(step, residual - a.residual, a.jacobian);
+      a.at = next;
+      a.residual = residual;
+      a.cost = cost;
+      damping = std::max(damping / 10.0, kLeastDamping);
     }
-    const bool small = fall < least_fall;
-    if (small && fresh) return;
+    const bool small = before - a.cost < std::max(least_fall, kLittle * (start - a.cost));
+    if (small && (fresh || !thorough)) return;
     fresh = small;
-    refresh(problem, small, a);
+    if (n + 1 < steps) refresh(problem, small, a);
     if (small) damping = kFirstDamping;
   }
 }

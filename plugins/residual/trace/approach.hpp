@@ -20,12 +20,13 @@ Approach approach_from(const FitProblem& problem, const Eigen::VectorXd& start, 
 /// The cost that a Gauss-Newton step from there would reach if the problem were linear.
 double promised_cost(const Approach& a);
 
-/// Goes on for at most that many steps, or until a step lowers the cost by less than `least_fall`.
+/// Goes on for at most that many steps, or until one lowers the cost by less than `least_fall`, or by less than a part in 200 of
+/// what all have. Where `thorough`, all columns are then formed afresh once and it goes on.
 ///
-/// Method: Levenberg-Marquardt on the normal equations; settled columns follow by Broyden's rank-one update (C. G.
-/// Broyden, A class of methods for solving nonlinear simultaneous equations, Math. Comp. 19 (1965) 577), the others are formed
-/// afresh each step, all of them once a step fails. A step so costs one residual a parameter that is not settled. The Jacobian is
-/// not exact at the end: for a covariance polish the result.
-void approach(const FitProblem& problem, int steps, double least_fall, Approach& a);
+/// Method: Levenberg-Marquardt on the normal equations; settled columns follow by Broyden's rank-one update (C. G. Broyden, A
+/// class of methods for solving nonlinear simultaneous equations, Math. Comp. 19 (1965) 577), the others are formed afresh each
+/// step. A step so costs one residual a parameter that is not settled. The Jacobian is not exact at the end: for a covariance
+/// polish the result.
+void approach(const FitProblem& problem, int steps, double least_fall, bool thorough, Approach& a);
 
 }  // namespace bodeflow::residual

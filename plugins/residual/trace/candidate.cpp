@@ -11,6 +11,8 @@ namespace {
 using records::short_number;
 
 constexpr std::size_t kSearches = 2;
+// The linear look promises so much more than was found.
+constexpr double kMoreThere = 1.05;
 constexpr int kFirstSteps = 3, kMoreSteps = 10;
 // In units of minus twice the log likelihood: what chance alone moves by more.
 constexpr double kLeastFallOfCost = 0.05;
@@ -57,11 +59,20 @@ Approach search(const Against& against, FitProblem& problem, const std::vector<E
   for (std::size_t n = 0; n < std::min(open.size(), kSearches); ++n) {
     Approach& a = open[n].second;
     problem.bound_base(a.at);
-    approach(problem, kFirstSteps, kLeastFallOfCost, a);
+    approach(problem, kFirstSteps, kLeastFallOfCost, false, a);
     if (!best.started || a.cost < best.cost) best = std::move(a);
   }
-  if (best.started) approach(problem, kMoreSteps, kLeastFallOfCost, best);
+  if (best.started) approach(problem, kMoreSteps, kLeastFallOfCost, false, best);
   return best;
+}
+
+/// Sets out again from where the linear look finds more than the search has.
+void search_on(const Against& against, FitProblem& problem, const Null& null, Approach& best) {
+  if (null.starts.empty() || !(null.most > kMoreThere * (against.before.fit.chi2 - best.cost))) return;
+  std::vector<std::vector<double>> own;
+  for (const Eigen::VectorXd& start : null.starts) own.emplace_back(start.begin(), start.end());
+  Approach other = search(against, problem, points(against, problem, own));
+  if (other.started && other.cost < best.cost) best = std::move(other);
 }
 
 std::string unphysical(const Candidate& c) {
@@ -169,17 +180,18 @@ Candidate try_effect(const Addition& addition, const Against& against) {
   const Eigen::Index settled = static_cast<Eigen::Index>(model.parameters().size());
   model.additions.push_back(addition);
   FitProblem problem(model, against.bench.fit, settled);
-  std::vector<std::vector<double>> own = addition.effect->starts(addition.situation);
-  std::vector<Eigen::VectorXd> starts;
-  for (const auto& values : own)
-    starts.push_back(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
-  c.null = null_distribution(problem, against.before.fit, starts);
-  for (const Eigen::VectorXd& start : c.null.starts) own.emplace_back(start.begin(), start.end());
-  const Approach best = search(against, problem, points(against, problem, own));
+  const std::vector<std::vector<double>> own = addition.effect->starts(addition.situation);
+  Approach best = search(against, problem, points(against, problem, own));
   if (!best.started) {
     c.reason = "could not be fitted: the model with it can't be computed at any start";
     return c;
   }
+  std::vector<Eigen::VectorXd> starts;
+  for (const auto& values : own)
+    starts.push_back(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  const double gain = against.before.fit.chi2 - best.cost;
+  c.null = null_distribution(problem, against.before.fit, starts, gain);
+  search_on(against, problem, c.null, best);
   measure(against, fit_at(problem, best), c);
   c.with.fit.jacobian.resize(0, 0);  // as many as there are candidates: it is formed again where it is needed
   return c;

@@ -7,7 +7,7 @@ namespace {
 
 // The prior variance of a parameter that the held-out record alone determines, in units of what that record leaves open.
 constexpr double kFree = 1e6;
-constexpr numerics::LeastSquaresLimits kLimits{40, 1e-7};
+constexpr numerics::LeastSquaresLimits kLimits{40, 1e-6};
 
 // A measurement that is not owned.
 Measurements alone(const Measurement& record) {

@@ -7,7 +7,7 @@
 namespace bodeflow::residual {
 namespace {
 
-constexpr numerics::LeastSquaresLimits kLimits{40, 1e-7};
+constexpr numerics::LeastSquaresLimits kLimits{40, 1e-6};
 constexpr std::size_t kStarts = 2;
 constexpr int kSteps = 12;
 
@@ -90,7 +90,7 @@ Expected<Fit> fit(const JointModel& model, const Measurements& records, const st
     if (!std::isfinite(costs[order[n]])) break;
     problem.bound_base(points[order[n]]);
     Approach a = approach_from(problem, points[order[n]], Eigen::MatrixXd());
-    if (order.size() > 1) approach(problem, kSteps, 1e-4 * a.cost, a);
+    if (order.size() > 1) approach(problem, kSteps, 1e-4 * a.cost, true, a);
     if (a.started && (!best.started || a.cost < best.cost)) best = std::move(a);
   }
   if (!best.started) return refused("the model can't be computed at any of the parameters to start from");

@@ -16,6 +16,8 @@ constexpr double kGone = 1e-2;
 constexpr std::size_t kDraws = 2000, kGrid = 24;
 constexpr double kTail = 0.02;
 constexpr std::size_t kKeptStarts = 2;
+// Such a p of a single trial is below any level however many trials there were.
+constexpr double kBeyondDoubt = 1e-12;
 // A direction of which less is left beside those of the model is one that the model has already.
 constexpr double kNothingNew = 1e-4;
 // Neighbours on a fine grid share this part of their direction: the largest gain between them is then hardly above theirs.
@@ -297,7 +299,7 @@ double Null::p(double gain) const {
   return with_trials(single(*this, gain), trials * between_bins);
 }
 
-Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& own_starts) {
+Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& own_starts, double gain) {
   const Addition& effect = problem.model().additions.back();
   if (effect.what.acts == Acts::tone) return of_tones(problem, from, own_starts.front());
   std::vector<Eigen::VectorXd> starts;
@@ -318,8 +320,10 @@ Null null_distribution(const FitProblem& problem, const Fit& from, const std::ve
   const std::vector<Eigen::VectorXd> points = grid(effect.parameters, amplitudes, starts);
   const bool own = std::any_of(amplitudes.begin(), amplitudes.end(),
                                [&](Eigen::Index i) { return effect.parameters[static_cast<std::size_t>(i)].each_record; });
-  if (own) {
-    n.trials = static_cast<double>(points.size());
+  const bool known =
+      std::all_of(problem.records().begin(), problem.records().end(), [](const auto& r) { return r->floor_known(); });
+  if (own || !known || single(n, gain) < kBeyondDoubt) {
+    n.trials = points.size() > 1 ? static_cast<double>(kFineGrid) : 1.0;
     return n;
   }
   const auto per_point = static_cast<Eigen::Index>(amplitudes.size());
@@ -329,7 +333,10 @@ Null null_distribution(const FitProblem& problem, const Fit& from, const std::ve
     unit.middleCols(per_point * static_cast<Eigen::Index>(g), per_point) = found[g].unit;
   std::stable_sort(found.begin(), found.end(), [](const Score& x, const Score& y) { return x.gain > y.gain; });
   for (const Score& s : found)
-    if (s.start && n.starts.size() < kKeptStarts) n.starts.push_back(*s.start);
+    if (s.start && n.starts.size() < kKeptStarts) {
+      n.starts.push_back(*s.start);
+      n.most = std::max(n.most, s.gain);
+    }
   if (unit.cols() <= per_point) return n;
   n.simulated = largest_gains(unit, per_point, n.one_sided && per_point == 1);
   const double limit = n.simulated[static_cast<std::size_t>((1.0 - kTail) * static_cast<double>(kDraws))];

@@ -17,6 +17,7 @@ struct Null {
 
   /// Values of the effect's parameters where a linear look at the residual finds most, best first.
   std::vector<Eigen::VectorXd> starts;
+  double most = 0.0;  ///< what it finds there
 
   /// The probability of so much gain, or more.
   double p(double gain) const;
@@ -33,6 +34,9 @@ struct Null {
 /// kept. Beyond their 98 % point p = 1 - (1 - p1)^trials, trials fitted there. Tones: the bins of their range, times sqrt(pi gain
 /// / 6) as the frequency is no bin: the rate at which a chi-squared process passes that level (R. J. Adler, The Geometry of
 /// Random Fields, 1981, section 4.1).
-Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& starts);
+///
+/// `gain` is what was found: where that is beyond all doubt, or a floor is unknown (so that the gain is of a noise model, and no
+/// chi-squared to the digit), trials are counted and not simulated: as many as a fine grid has points, an upper bound.
+Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& starts, double gain);
 
 }  // namespace bodeflow::residual

@@ -10,7 +10,7 @@ namespace {
 
 // A candidate that gains less than this part of what the best one does is no rival: it is not fitted to the end.
 constexpr double kRival = 0.5;
-constexpr std::size_t kMostSettled = 10;
+constexpr std::size_t kMostSettled = 6;
 // One that chance would do once in so many times its level may be a finding once it is fitted to the end.
 constexpr double kNearLevel = 100.0;
 
@@ -48,10 +48,10 @@ class Searcher {
   }
 
   /// All that can be tried beside a model, best first, the promising ones fitted to the end.
-  Step try_all(const Examined& before, bool first, bool priced) {
+  Step try_all(const Examined& before, const Catalogue& catalogue, bool first, bool priced) {
     Step step;
     const Against against{bench_, before, out_.base.select.residual, base_starts_};
-    for (Bound& b : bind_all(catalogue_, before.fit.model, values_of(before.fit), bench_.fit)) {
+    for (Bound& b : bind_all(catalogue, before.fit.model, values_of(before.fit), bench_.fit)) {
       if (!b.refusal.empty()) {
         if (out_.steps.empty()) out_.refused.push_back(std::move(b));
         continue;
@@ -115,7 +115,7 @@ class Searcher {
 
   /// Adds the best candidate; false where the search is over.
   bool take_step() {
-    Step step = try_all(out_.best, out_.found.empty(), true);
+    Step step = try_all(out_.best, catalogue_, out_.found.empty(), true);
     const bool some = !step.candidates.empty() && step.candidates.front().accepted;
     if (some) {
       Candidate& best = step.candidates.front();
@@ -177,14 +177,28 @@ class Searcher {
     return c;
   }
 
+  /// Effects that passed as a candidate at some step.
+  Catalogue once_accepted() const {
+    Catalogue some;
+    for (const CatalogueEntry& entry : catalogue_) {
+      const bool passed = std::any_of(out_.steps.begin(), out_.steps.end(), [&](const Step& s) {
+        return std::any_of(s.candidates.begin(), s.candidates.end(),
+                           [&](const Candidate& c) { return c.accepted && c.addition.what.id == entry.what.id; });
+      });
+      if (passed) some.push_back(entry);
+    }
+    return some;
+  }
+
   void find_equivalents() {
     const bool one = out_.found.size() == 1;
+    const Catalogue rivals = once_accepted();
     for (std::size_t n = 0; n < out_.found.size(); ++n) {
       if (one && out_.dropped.empty()) {
         compare(n, out_.steps.front());
       } else if (auto rest = without(n)) {
         test_classes(bench_, *rest);
-        Step step = try_all(*rest, false, false);
+        Step step = try_all(*rest, rivals, false, false);
         compare(n, step);
       }
     }

@@ -1,4 +1,4 @@
-#include "amplitude.hpp"
+#include "blocks/amplitude.hpp"
 
 #include <cmath>
 

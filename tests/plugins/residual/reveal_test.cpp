@@ -1,4 +1,4 @@
-#include "reveal.hpp"
+#include "blocks/reveal.hpp"
 
 #include "catch.hpp"
 

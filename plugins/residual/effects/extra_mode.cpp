@@ -21,13 +21,23 @@ bool is_peak(const Situation& s, std::size_t k) {
          (k + 1 == s.missing.size() || significance(s, k + 1) < own);
 }
 
+/// The frequency at which |missing| falls below `least` on the way from line `peak` by `step`; that of the end where it does not.
+double edge(const Situation& s, std::size_t peak, std::ptrdiff_t step, double least) {
+  std::size_t k = peak;
+  const auto last = step < 0 ? std::size_t{0} : s.missing.size() - 1;
+  while (k != last) {
+    const std::size_t next = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + step);
+    const double own = std::abs(s.missing[k]), other = std::abs(s.missing[next]);
+    if (other < least) return s.line_hz[k] + (own - least) / (own - other) * (s.line_hz[next] - s.line_hz[k]);
+    k = next;
+  }
+  return s.line_hz[last];
+}
+
 /// Half the relative width in which |missing| stays above its peak over sqrt(2).
 double half_width(const Situation& s, std::size_t peak) {
   const double least = std::abs(s.missing[peak]) / std::sqrt(2.0);
-  std::size_t low = peak, high = peak;
-  while (low > 0 && std::abs(s.missing[low]) > least) --low;
-  while (high + 1 < s.missing.size() && std::abs(s.missing[high]) > least) ++high;
-  return std::clamp(0.5 * (s.line_hz[high] - s.line_hz[low]) / s.line_hz[peak], 1e-3, 0.5);
+  return std::clamp(0.5 * (edge(s, peak, 1, least) - edge(s, peak, -1, least)) / s.line_hz[peak], 1e-3, 0.5);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <vector>
 
 /// A base model with declared values, without a host: numbers in the parameter's own unit. Other parameters have their defaults.
-using Declared = std::pair<std::string, std::variant<bool, double, std::string>>;
+using Declared = std::pair<std::string, std::variant<bool, std::int64_t, double, std::string>>;
 
 template <class Base>
 std::shared_ptr<const Base> declared_base(const std::vector<Declared>& values = {}) {

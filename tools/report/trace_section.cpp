@@ -226,7 +226,7 @@ void add_equivalents(Page& page, const Record& record) {
 void add_not_tried(Page& page, const Record& record) {
   const auto names = record.texts("not_tried");
   if (names.empty()) return;
-  open_details(page.body(), fmt::format("{} effects of the catalogue could not be tried", names.size()));
+  open_details(page.body(), fmt::format("Effects of the catalogue that could not be tried: {}", names.size()));
   Table table{"", {{"Effect", false}, {"Why not", false}}, {}};
   for (std::size_t n = 0; n < names.size(); ++n) table.rows.push_back({names[n], record.text_at("not_tried_reasons", n, "")});
   add_table(page.body(), table);

@@ -109,6 +109,57 @@ TEST_CASE("report: a trace whose arrays do not fit is shown as far as they do") 
     CHECK_THAT(page, !Contains(absent));
 }
 
+TEST_CASE(
+    "report: a trace with several effects says which can't be told apart, what each record was for, and what was not tried") {
+  ordered_json record = trace();
+  ordered_json& a = record["attributes"];
+  a["effects"] = {"dead_time", "delay"};
+  a["effect_labels"] = {"dead_time", "delay"};
+  a["effect_equivalents"] = {"", "skin_effect"};
+  a["candidate_steps"] = {1, 2};
+  a["advice"] = {"to tell a delay from a skin effect, measure the delay of the sensor"};
+  a["not_tried"] = {"backlash"};
+  a["not_tried_reasons"] = {"acts at places of kind coupling, which the base model has not"};
+  a["records"] = {"fit 1", "select"};
+  a["record_checksums"] = {"0123456789abcdef0123", "fedcba"};
+  record["arrays"]["record_levels"] = array_of("V", {2}, {13.2, 24.1});
+  const std::string page = page_of({{"trace", record}});
+  for (const char* text :
+       {"delay can&#39;t be told from skin_effect with these data.", "to tell a delay from a skin effect",
+        "Added: dead_time and delay", "with dead_time and delay, test record", "Effects of the catalogue that could not be tried: 1",
+        "ranks the candidates", "0123456789abcdef<", "Input, rms [V]"})
+    CHECK_THAT(page, Contains(text));
+}
+
+TEST_CASE("report: what was measured with the remedy stands beside the errors before") {
+  ordered_json record = trace();
+  ordered_json& a = record["attributes"];
+  a["remedy"] = "Switched on in the drive: dead-time compensation of 1.4e-06 s.";
+  a["sentence_remedied"] = "Measured again, the model without the effect has an error of 0.031 A.";
+  a["error_remedied"] = 0.031;
+  a["excess_remedied"] = 0.0115;
+  a["noise_floor_remedied"] = 0.0288;
+  record["arrays"]["remedied_at"] = array_of("Hz", {4}, {0, 1, 2, 3});
+  record["arrays"]["residual_remedied"] = array_of("A", {4}, {0.001, 0.002, 0.001, 0.001});
+  const std::string page = page_of({{"remeasure", record}});
+  for (const char* text : {"Switched on in the drive: dead-time compensation", "without it, measured with the remedy", "0.0115",
+                           "Residual of the model without the effect"})
+    CHECK_THAT(page, Contains(text));
+  CHECK_THAT(page, !Contains("Candidates, best first"));
+}
+
+TEST_CASE("report: a residual over time is drawn with the measured course") {
+  ordered_json record = trace();
+  record["arrays"].erase("frequency");
+  record["arrays"].erase("kind");
+  record["arrays"].erase("residual_noise");
+  record["arrays"]["time"] = array_of("s", {4}, {0, 1, 2, 3});
+  record["arrays"]["measured"] = array_of("A", {4}, {0, 1, 2, 1});
+  const std::string page = page_of({{"trace", record}});
+  CHECK_THAT(page, Contains("Measured minus predicted. Where the noise is not known"));
+  CHECK_THAT(page, Contains("Time [s]"));
+}
+
 TEST_CASE("report: the truth stands beside the parameters, and what the graph shows comes first") {
   const ordered_json results = {
       {"hide.secret",

@@ -58,13 +58,15 @@ void RemedyBlock::receive(int, const RecordView& record, Io& io) {
   std::string words;
   for (std::size_t k = 0; k < knobs_.size(); ++k) {
     const Knob& knob = knobs_[k];
-    const auto value = knob.there ? remedy_value(kRemedies[k], told.effects, knob.factor, knob.place) : std::nullopt;
-    io.emit(kKnobs[k], RecordBuilder("parameter_change").set("parameter", knob.parameter).set("value", value.value_or(0.0)));
-    if (!value) continue;
+    std::optional<double> found;
+    if (knob.there) found = remedy_value(kRemedies[k], told.effects, knob.factor, knob.place);
+    const double value = found.value_or(0.0);
+    io.emit(kKnobs[k], RecordBuilder("parameter_change").set("parameter", knob.parameter).set("value", value));
+    if (!found) continue;
     effects.emplace_back(kRemedies[k].effect);
-    values.push_back(*value);
+    values.push_back(value);
     units.push_back(knob.unit);
-    words += (words.empty() ? "" : ", ") + remedy_words(kRemedies[k], *value, knob.unit);
+    words += (words.empty() ? "" : ", ") + remedy_words(kRemedies[k], value, knob.unit);
   }
   RecordBuilder r("remedy");
   r.set("exists", !effects.empty()).set("effects", effects).set("values", values).set("units", units);

@@ -14,10 +14,21 @@ namespace {
 constexpr Eigen::Index kMostBands = 24, kLeastBands = 4, kLeastBinsOfBand = 15;
 constexpr Eigen::Index kDifferences = 3;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+/// The logarithm of the mean of exponential values, from the value in their middle. Its expectation, of the k-th smallest of n:
+/// the cumulants sum_{i < k} (j - 1)! / (n - i)^j, j = 1, 2, 3 (A. Renyi, On the theory of order statistics, 1953), through the
+/// first terms of the logarithm.
+double log_level(std::vector<double> values) {
+  const std::size_t n = values.size(), below = n / 2;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(below);
   std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  double mean = 0.0, second = 0.0, third = 0.0;
+  for (std::size_t i = 0; i <= below; ++i) {
+    const double one = 1.0 / static_cast<double>(n - i);
+    mean += one;
+    second += one * one;
+    third += 2.0 * one * one * one;
+  }
+  return std::log(*middle / mean) + second / (2.0 * mean * mean) - third / (3.0 * mean * mean * mean);
 }
 
 Eigen::MatrixXd differences(Eigen::Index size) {
@@ -69,17 +80,17 @@ Expected<FloorOfBins> FloorOfBins::make(const Eigen::VectorXd& frequency_hz, con
   }
   FloorOfBins floor;
   floor.middle_hz_.resize(bands);
-  Eigen::VectorXd log_level(bands), weight(bands);
+  Eigen::VectorXd levels(bands), weight(bands);
   for (Eigen::Index b = 0; b < bands; ++b) {
     const Eigen::Index begin = b * bins / bands, end = (b + 1) * bins / bands;
-    const double level = median({power.data() + begin, power.data() + end}) / std::numbers::ln2;
-    if (!(level > 0.0)) return refused("most of the bins between the lines are 0: there is no noise, and so no noise floor");
+    levels[b] = log_level({power.data() + begin, power.data() + end});
+    if (!std::isfinite(levels[b]))
+      return refused("most of the bins between the lines are 0: there is no noise, and so no noise floor");
     floor.middle_hz_[b] = frequency_hz.segment(begin, end - begin).mean();
-    log_level[b] = std::log(level);
     weight[b] = static_cast<double>(end - begin) * std::numbers::ln2 * std::numbers::ln2;
   }
-  const Eigen::MatrixXd s = best_smoother(log_level, weight);
-  floor.level_ = s * log_level;
+  const Eigen::MatrixXd s = best_smoother(levels, weight);
+  floor.level_ = s * levels;
   floor.covariance_ = s * weight.cwiseInverse().asDiagonal() * s.transpose();
   floor.slope_ = monotone_slopes(floor.middle_hz_, floor.level_);
   return floor;

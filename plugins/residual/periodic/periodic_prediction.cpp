@@ -20,6 +20,8 @@ using Complex = std::complex<double>;
 // Values of a band-limited input for each sample of a simulation or of a map.
 constexpr int kFine = 4;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
+// A response that grows so much from the first line to this part of it is that of an integrator.
+constexpr double kNearDc = 1e-6, kIntegrates = 1e4;
 
 Complex s_at(double frequency_hz) { return {0.0, kTwoPi * frequency_hz}; }
 
@@ -51,10 +53,20 @@ class Predictor {
     periods_ = timed ? record.skip + record.periods : 1;
     simulated_ = model.has(Acts::law) || model.base->has_laws();
     held_ = model.base->timing().hold != Hold::band_limited;
+    const double first_hz = record.line_hz();
+    integrates_ = path_.at(kNearDc * first_hz).norm() > kIntegrates * path_.at(first_hz).norm();
     map_input();
   }
 
   PeriodicPrediction run() {
+    PeriodicPrediction p = predicted();
+    // Where an integrator stands is no matter of the model.
+    if (integrates_) p.bins[0] = r_.output[0];
+    return p;
+  }
+
+ private:
+  PeriodicPrediction predicted() {
     const bool mapped_output = model_.has(Acts::output);
     if (!simulated_ && !mapped_output && periods_ == 1) {
       p_.bins = Eigen::VectorXcd::Zero(r_.bins());
@@ -72,7 +84,6 @@ class Predictor {
     return std::move(p_);
   }
 
- private:
   PeriodicPrediction failed() const {
     PeriodicPrediction f;
     f.bins = Eigen::VectorXcd::Constant(r_.bins(), std::numeric_limits<double>::quiet_NaN());
@@ -95,15 +106,18 @@ class Predictor {
   void map_input() {
     fine_ = 1;
     const bool mapped = model_.has(Acts::input);
+    input_ = r_.input;
+    // What repeats behind an integrator has a mean of 0 in front of it: the mean that was measured is balanced by a load.
+    if (integrates_) input_.rowwise() -= input_.colwise().mean().eval();
     if (!mapped) {
-      input_ = periods_ > 1 && !simulated_ ? Eigen::MatrixXd(r_.input.replicate(periods_, 1)) : r_.input;
+      if (periods_ > 1 && !simulated_) input_ = input_.replicate(periods_, 1).eval();
       return;
     }
-    input_ = r_.input;
+    const Eigen::MatrixXd period = input_;
     if (!held_) {
       fine_ = kFine;
-      input_.resize(r_.period * fine_, r_.input.cols());
-      for (Eigen::Index j = 0; j < r_.input.cols(); ++j) input_.col(j) = signal_of(coefficients(r_.input.col(j)), input_.rows());
+      input_.resize(r_.period * fine_, period.cols());
+      for (Eigen::Index j = 0; j < period.cols(); ++j) input_.col(j) = signal_of(coefficients(period.col(j)), input_.rows());
     }
     if (periods_ > 1) input_ = input_.replicate(periods_, 1).eval();
     for (std::size_t a = 0; a < model_.additions.size(); ++a) {
@@ -210,7 +224,7 @@ class Predictor {
   bool signals_;
   SampledPath path_;
   Eigen::Index periods_ = 1;  ///< that are predicted: all of the record where the time counts
-  bool simulated_ = false, held_ = true;
+  bool simulated_ = false, held_ = true, integrates_ = false;
   int fine_ = 1;           ///< values of `input_` a sample
   Eigen::MatrixXd input_;  ///< behind its maps
   PeriodicPrediction p_;

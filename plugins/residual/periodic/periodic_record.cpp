@@ -14,6 +14,8 @@ namespace {
 constexpr double kRounding = 1e-9;
 // Chance that a line of noise alone in a measured input is taken for an excited one.
 constexpr double kFalseLine = 1e-6;
+// Lines of a designed excitation that are next in size differ by less than 10 dB in power.
+constexpr double kUneven = 10.0;
 // The band that is looked at ends above the last excited line: harmonics of what is missing show there.
 constexpr double kBeyond = 1.25;
 constexpr Eigen::Index kSkirtBins = 2;
@@ -61,7 +63,22 @@ Expected<InputChannel> input_channel(const Eigen::VectorXd& samples, Eigen::Inde
   return c;
 }
 
-/// Excited lines that the recording states, or those at which an input stands above its noise.
+/// The lines whose power lies above the widest gap between powers, where it is wider than an excitation is uneven: those below it
+/// are what the source adds of its own. All where there is no such gap.
+std::vector<Eigen::Index> above_gap(std::vector<Eigen::Index> lines, const Eigen::VectorXd& power) {
+  if (lines.size() < 2) return lines;
+  std::sort(lines.begin(), lines.end(), [&](Eigen::Index a, Eigen::Index b) { return power[a] > power[b]; });
+  std::size_t keep = lines.size();
+  double widest = kUneven;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const double gap = power[lines[i - 1]] / power[lines[i]];
+    if (gap > widest) widest = gap, keep = i;
+  }
+  lines.resize(keep);
+  return lines;
+}
+
+/// Excited lines that the recording states, or those at which an input stands above its noise and its own distortion.
 Expected<std::vector<Eigen::Index>> excited_lines(const records::Recording& recording, const std::vector<InputChannel>& inputs,
                                                   double line_hz) {
   std::vector<Eigen::Index> lines(recording.excited_lines.begin(), recording.excited_lines.end());
@@ -69,10 +86,13 @@ Expected<std::vector<Eigen::Index>> excited_lines(const records::Recording& reco
     for (const InputChannel& c : inputs) {
       const Eigen::VectorXd power = c.lines.cwiseAbs2();
       const double least = kRounding * kRounding * power.tail(power.size() - 1).maxCoeff();
+      std::vector<Eigen::Index> seen;
       for (Eigen::Index k = 1; k < power.size(); ++k) {
         const double limit = c.noise ? -std::log(kFalseLine) * c.noise->at(static_cast<double>(k) * line_hz) : 0.0;
-        if (power[k] > std::max(least, limit)) lines.push_back(k);
+        if (power[k] > std::max(least, limit)) seen.push_back(k);
       }
+      seen = above_gap(std::move(seen), power);
+      lines.insert(lines.end(), seen.begin(), seen.end());
     }
   }
   std::sort(lines.begin(), lines.end());

@@ -11,8 +11,9 @@
 namespace bodeflow::residual {
 namespace {
 
-// Mean of n exponential values over their median / ln 2: variance of the ratio times n, 1 + 1 / ln^2 2 - 2 cov with cov = 1.
-constexpr double kMeanOverMedian = 1.08;
+// Part of the floor's variance that a mean over bins of which the floor is made still has beside it: medians of n exponential
+// values have the variance 2.08 / n in logarithms and the covariance 1 / n with means over any of these values.
+constexpr double kOwnFloor = 0.08 / 2.08;
 
 double multiple(double mean_square) { return std::sqrt(std::max(mean_square, 0.0)); }
 
@@ -49,17 +50,22 @@ class Tester {
     return ClassTest{name, multiple(ratio), f_tail(ratio, s.freedom, 2.0 / r_.floor.relative_variance(frequencies(r_, bins)))};
   }
 
-  std::optional<ClassTest> between() const {
-    const std::vector<Eigen::Index> bins = bins_of(r_, Kind::between);
+  /// Of bins from which the floor is made.
+  std::optional<ClassTest> between(const char* name, Kind kind) const {
+    const std::vector<Eigen::Index> bins = bins_of(r_, kind);
     if (bins.empty()) return {};
     const Sum s = sum(bins);
     if (s.freedom < 0.5) return {};
-    const double ratio = s.squares / s.freedom, freedom = s.freedom / kMeanOverMedian;
-    return ClassTest{"between", multiple(ratio), numerics::chi_squared_tail(ratio * freedom, freedom)};
+    const double ratio = s.squares / s.freedom;
+    const double freedom = 2.0 / (2.0 / s.freedom + kOwnFloor * r_.floor.relative_variance(frequencies(r_, bins)));
+    return ClassTest{name, multiple(ratio), numerics::chi_squared_tail(ratio * freedom, freedom)};
   }
 
+  /// The floor's relative error is shared by neighbours: the chance is its mean over three levels of the floor (Gauss and
+  /// Hermite).
   std::optional<ClassTest> peak() const {
-    double least = 1.0, highest = 0.0, count = 0.0;
+    double highest = 0.0, count = 0.0;
+    Eigen::Index where = 0;
     for (Eigen::Index l = 0; l < r_.bins(); ++l) {
       const Kind kind = r_.kind[static_cast<std::size_t>(l)];
       if (kind != Kind::between && kind != Kind::skirt) continue;
@@ -68,11 +74,13 @@ class Tester {
       ++count;
       if (power <= highest) continue;
       highest = power;
-      const double nu = 2.0 / r_.floor.relative_variance(Eigen::VectorXd::Constant(1, r_.frequency_hz[l]));
-      least = std::min(least, f_tail(power, 2.0, nu));
+      where = l;
     }
     if (count == 0.0) return {};
-    return ClassTest{"peak", multiple(highest), -std::expm1(count * std::log1p(-std::min(least, 1.0 - 1e-16)))};
+    const double spread = std::sqrt(3.0 * r_.floor.relative_variance(Eigen::VectorXd::Constant(1, r_.frequency_hz[where])));
+    const auto chance = [&](double level) { return -std::expm1(count * std::log1p(-std::exp(-level * highest))); };
+    const double p = (4.0 * chance(1.0) + chance(std::exp(spread)) + chance(std::exp(-spread))) / 6.0;
+    return ClassTest{"peak", multiple(highest), std::min(p, 1.0)};
   }
 
  private:
@@ -120,8 +128,8 @@ std::vector<ClassTest> test_bins(const PeriodicRecord& record, const Eigen::Vect
   keep(tester.lines("odd", Kind::odd));
   keep(tester.lines("even", Kind::even));
   keep(tester.lines("dc", Kind::dc));
-  keep(tester.lines("skirts", Kind::skirt));
-  keep(tester.between());
+  keep(tester.between("skirts", Kind::skirt));
+  keep(tester.between("between", Kind::between));
   keep(tester.peak());
   return tests;
 }

@@ -111,18 +111,23 @@ Eigen::VectorXd FloorOfBins::at(const Eigen::VectorXd& frequency_hz) const {
 }
 
 double FloorOfBins::relative_variance(const Eigen::VectorXd& frequency_hz) const {
+  return relative_variance(frequency_hz, Eigen::VectorXd::Ones(frequency_hz.size()));
+}
+
+double FloorOfBins::relative_variance(const Eigen::VectorXd& frequency_hz, const Eigen::VectorXd& weight) const {
   if (frequency_hz.size() == 0) return 0.0;
   const Eigen::Index last = middle_hz_.size() - 1;
-  Eigen::VectorXd weight = Eigen::VectorXd::Zero(last + 1);
-  for (const double f : frequency_hz) {  // as if levels were joined by straight lines
+  Eigen::VectorXd part = Eigen::VectorXd::Zero(last + 1);
+  for (Eigen::Index n = 0; n < frequency_hz.size(); ++n) {  // as if levels were joined by straight lines
+    const double f = frequency_hz[n];
     const Eigen::Index above =
         std::clamp<Eigen::Index>(std::upper_bound(middle_hz_.begin(), middle_hz_.end(), f) - middle_hz_.begin(), 1, last);
     const double t = (f - middle_hz_[above - 1]) / (middle_hz_[above] - middle_hz_[above - 1]);
-    weight[above - 1] += 1.0 - t;
-    weight[above] += t;
+    part[above - 1] += weight[n] * (1.0 - t);
+    part[above] += weight[n] * t;
   }
-  weight /= static_cast<double>(frequency_hz.size());
-  return weight.dot(covariance_ * weight);
+  part /= weight.sum();
+  return part.dot(covariance_ * part);
 }
 
 }  // namespace bodeflow::residual

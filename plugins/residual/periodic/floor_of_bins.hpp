@@ -27,6 +27,8 @@ class FloorOfBins {
   /// The variance of the relative error of the floor's mean over these frequencies; with nu = 2 / variance it counts as nu
   /// degrees of freedom. 0 without frequencies.
   double relative_variance(const Eigen::VectorXd& frequency_hz) const;
+  /// The same of a mean with weights.
+  double relative_variance(const Eigen::VectorXd& frequency_hz, const Eigen::VectorXd& weight) const;
 
  private:
   Eigen::VectorXd middle_hz_, level_, slope_;  ///< of the logarithm, a band each

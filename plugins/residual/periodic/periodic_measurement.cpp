@@ -87,7 +87,7 @@ class PeriodicMeasurement final : public Measurement {
   HeldOutError error(const Eigen::VectorXd& residual) const override {
     const Eigen::VectorXcd left = unwhitened(r_, residual);
     double square = 0.0, mean = 0.0, spread = 0.0;
-    std::vector<double> hz;
+    std::vector<double> hz, part;
     for (Eigen::Index l = 0; l < r_.bins(); ++l) {
       if (!counts(l)) continue;
       const double weight = l == 0 ? 1.0 : 2.0, own = weight * r_.variance[l];
@@ -95,10 +95,12 @@ class PeriodicMeasurement final : public Measurement {
       mean += own;
       spread += 2.0 * own * own / weight;
       hz.push_back(r_.frequency_hz[l]);
+      part.push_back(own);
     }
     const double d1 = 2.0 * mean * mean / spread;
-    const double d2 =
-        2.0 / r_.floor.relative_variance(Eigen::Map<const Eigen::VectorXd>(hz.data(), static_cast<Eigen::Index>(hz.size())));
+    const auto size = static_cast<Eigen::Index>(hz.size());
+    const double d2 = 2.0 / r_.floor.relative_variance(Eigen::Map<const Eigen::VectorXd>(hz.data(), size),
+                                                       Eigen::Map<const Eigen::VectorXd>(part.data(), size));
     HeldOutError h;
     h.error = std::sqrt(square);
     h.floor = std::sqrt(mean);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <bodeflow/block.hpp>
+#include <bodeflow/parts.hpp>
 
 /// Drag of a fluid: the force F = k v |v| against the velocity v of a bearing.
 class Drag final : public bodeflow::Effect {

@@ -1,5 +1,6 @@
 // Built with clang and libc++, to be loaded by a host that was built with g++ and libstdc++: everything that passes the border.
 #include <bodeflow/block.hpp>
+#include <bodeflow/parts.hpp>
 #include <bodeflow/record.hpp>
 #include <complex>
 #include <map>

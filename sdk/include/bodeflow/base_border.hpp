@@ -172,5 +172,13 @@ class BaseBorder {
   detail::ToldOnce failure_;
 };
 
+template <class B>
+struct FactoryOf<B, std::enable_if_t<std::is_base_of_v<BaseModel, B>>> {
+  static bf_factory make() {
+    const bf_block_descriptor& d = base_type<B>().c();
+    return {sizeof(bf_factory), 0, "base_model", d.id, &d, BaseBorder<B>::create};
+  }
+};
+
 }  // namespace v0
 }  // namespace bodeflow

@@ -2,8 +2,8 @@
 
 #include <atomic>
 #include <bodeflow/answer.hpp>
-#include <bodeflow/border.hpp>
 #include <bodeflow/effect_type.hpp>
+#include <bodeflow/plugin.hpp>
 #include <limits>
 #include <memory>
 #include <type_traits>
@@ -142,6 +142,14 @@ class EffectBorder {
 
   E effect_;
   detail::ToldOnce failure_;
+};
+
+template <class E>
+struct FactoryOf<E, std::enable_if_t<std::is_base_of_v<Effect, E>>> {
+  static bf_factory make() {
+    const bf_effect_descriptor& d = effect_type<E>().c();
+    return {sizeof(bf_factory), 0, "effect", d.id, &d, EffectBorder<E>::create};
+  }
 };
 
 }  // namespace v0

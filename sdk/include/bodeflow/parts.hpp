@@ -1,5 +1,8 @@
 #pragma once
 
+// Effects and base models: to write them (derive from Effect or BaseModel, describe, name in BODEFLOW_PLUGIN), and to use those
+// of all plugins in a block (Parts).
+#include <bodeflow/base_border.hpp>
 #include <bodeflow/base_proxy.hpp>
 #include <bodeflow/block_base.hpp>
 #include <bodeflow/declarations.hpp>

@@ -2,7 +2,6 @@
 
 #include <bodeflow/abi.h>
 
-#include <bodeflow/base_border.hpp>
 #include <bodeflow/border.hpp>
 #include <cstddef>
 #include <string>
@@ -11,6 +10,16 @@
 
 namespace bodeflow {
 inline namespace v0 {
+
+/// The factory of class T. This is that of blocks; <bodeflow/parts.hpp> has those of effects and base models.
+template <class T, class = void>
+struct FactoryOf {
+  static_assert(std::is_base_of_v<Block, T>, "no block; effects and base models need <bodeflow/parts.hpp>");
+  static bf_factory make() {
+    const bf_block_descriptor& d = block_type<T>().c();
+    return {sizeof(bf_factory), 0, "block", d.id, &d, Border<T>::create};
+  }
+};
 
 /// The factories of classes of blocks, effects and base models, described and checked.
 class FactoryTable {
@@ -28,30 +37,16 @@ class FactoryTable {
   std::uint32_t count() const { return static_cast<std::uint32_t>(places_.size()); }
 
  private:
-  /// Calls `enter` with the kind, id, descriptor and function of class T.
-  template <class T, class Enter>
-  static void describe(Enter&& enter) {
-    if constexpr (std::is_base_of_v<Effect, T>) {
-      enter("effect", effect_type<T>().c().id, &effect_type<T>().c(), EffectBorder<T>::create);
-    } else if constexpr (std::is_base_of_v<BaseModel, T>) {
-      enter("base_model", base_type<T>().c().id, &base_type<T>().c(), BaseBorder<T>::create);
-    } else {
-      enter("block", block_type<T>().c().id, &block_type<T>().c(), Border<T>::create);
-    }
-  }
-
   template <class T>
   void add() {
     // Where the factory lives as long as the plugin, whatever happens to the table.
     static bf_factory factory{};
     try {
-      describe<T>([&](const char* kind, const char* id, const void* descriptor, auto create) {
-        for (const bf_factory* other : places_) {
-          if (std::string_view(other->id) == id) fail(std::string("id '") + id + "' stands twice");
-        }
-        factory = {sizeof factory, 0, kind, id, descriptor, create};
-        places_.push_back(&factory);
-      });
+      factory = FactoryOf<T>::make();
+      for (const bf_factory* other : places_) {
+        if (std::string_view(other->id) == factory.id) fail(std::string("id '") + factory.id + "' stands twice");
+      }
+      places_.push_back(&factory);
     } catch (const Failure& failure) {
       if (!problems_.empty()) problems_ += '\n';
       problems_ += failure.what();

@@ -82,7 +82,7 @@ std::vector<std::string> Impedance::conventions() const {
 }
 
 Impedance::Values Impedance::values_of(const double* v, const double* known) const {
-  Values x{v[0], std::max(v[1], 0.0), 0.0, 1.0, 1.0, 1.0};
+  Values x{v[0], v[1], 0.0, 1.0, 1.0, 1.0};
   if (!motion_) return x;
   const double* next = v + 2;
   x.force_factor = force_factor_ ? *force_factor_ : *next++;
@@ -95,7 +95,7 @@ Impedance::Values Impedance::values_of(const double* v, const double* known) con
 bool Impedance::valid(const Values& x) const {
   for (const double value : {x.resistance, x.mass, x.mechanical_resistance, x.stiffness})
     if (!(value > 0.0) || !std::isfinite(value)) return false;
-  return std::isfinite(x.inductance) && std::isfinite(x.force_factor);
+  return x.inductance >= 0.0 && std::isfinite(x.inductance) && std::isfinite(x.force_factor);
 }
 
 std::vector<std::vector<double>> Impedance::starts(std::span<const MeasuredResponse> measured) const {

@@ -34,6 +34,26 @@ Eigen::VectorXd limited(const FitProblem& problem, Eigen::VectorXd step) {
   return step;
 }
 
+/// The step within the bounds of the base: coordinates that it would take out go to their bound, and the others make the best of
+/// it.
+Eigen::VectorXd bounded_step(const FitProblem& problem, const Approach& a, double damping) {
+  Eigen::VectorXd step = limited(problem, step_of(a.jacobian, a.residual, damping));
+  const Eigen::VectorXd allowed = problem.within_bounds(a.at + step) - a.at;
+  const Eigen::Array<bool, Eigen::Dynamic, 1> cut = (problem.within_bounds(a.at + step) - (a.at + step)).array().abs() > 0.0;
+  if (!cut.any()) return step;
+  Eigen::MatrixXd jacobian = a.jacobian;
+  Eigen::VectorXd residual = a.residual;
+  for (Eigen::Index i = 0; i < step.size(); ++i) {
+    if (!cut[i]) continue;
+    residual += jacobian.col(i) * allowed[i];
+    jacobian.col(i).setZero();
+  }
+  step = limited(problem, step_of(jacobian, residual, damping));
+  for (Eigen::Index i = 0; i < step.size(); ++i)
+    if (cut[i]) step[i] = allowed[i];
+  return problem.within_bounds(a.at + step) - a.at;
+}
+
 void refresh(const FitProblem& problem, bool all, Approach& a) {
   for (Eigen::Index i = 0; i < a.at.size(); ++i) {
     if (!all && problem.is_settled(i)) continue;
@@ -80,7 +100,7 @@ void approach(const FitProblem& problem, int steps, double least_fall, bool thor
   for (int n = 0; n < steps; ++n) {
     const double before = a.cost;
     for (int trial = 0; trial < kTrials && a.cost == before; ++trial) {
-      const Eigen::VectorXd step = limited(problem, step_of(a.jacobian, a.residual, damping));
+      const Eigen::VectorXd step = bounded_step(problem, a, damping);
       const Eigen::VectorXd next = a.at + step;
       const Eigen::VectorXd residual = problem.residual(next);
       const double cost = residual.allFinite() ? residual.squaredNorm() : std::numeric_limits<double>::infinity();

@@ -1,6 +1,7 @@
 #include "trace/fit_problem.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -37,7 +38,20 @@ bool FitProblem::inside(const Eigen::VectorXd& c) const {
   return true;
 }
 
-Eigen::VectorXd FitProblem::residual(const Eigen::VectorXd& c) const {
+Eigen::VectorXd FitProblem::within_bounds(Eigen::VectorXd c) const {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(model_.base_count()); ++p) {
+    const FitParameter& parameter = layout_.parameters()[p];
+    if (parameter.logarithmic) continue;
+    for (std::size_t r = 0; r < records_.size(); ++r) {
+      double& value = c[layout_.index(p, r)];
+      value = std::clamp(value, parameter.low / parameter.scale, parameter.high / parameter.scale);
+    }
+  }
+  return c;
+}
+
+Eigen::VectorXd FitProblem::residual(const Eigen::VectorXd& coordinates) const {
+  const Eigen::VectorXd c = within_bounds(coordinates);
   if (!c.allFinite() || !inside(c)) return Eigen::VectorXd::Constant(rows_, std::numeric_limits<double>::quiet_NaN());
   Eigen::VectorXd all(rows_);
   for (std::size_t r = 0; r < records_.size(); ++r)
@@ -58,6 +72,9 @@ Eigen::VectorXd FitProblem::difference(Eigen::Index i, double step, const Eigen:
 }
 
 Eigen::VectorXd FitProblem::column(Eigen::Index i, const Eigen::VectorXd& c, const Eigen::VectorXd& here) const {
+  Eigen::VectorXd moved = c;
+  moved[i] += kStep;
+  if (within_bounds(moved)[i] < moved[i]) return difference(i, -kStep, c, here);
   Eigen::VectorXd forward = difference(i, kStep, c, here);
   return forward.allFinite() ? forward : difference(i, -kStep, c, here);
 }

@@ -25,7 +25,11 @@ class FitProblem {
   /// wrong model can pull them away without end.
   void bound_base(const Eigen::VectorXd& coordinates) { bounds_ = coordinates; }
 
-  /// Not finite outside of the domain.
+  /// The coordinates with those of the base that are not logarithmic moved into the bounds that physics sets them: a parameter
+  /// that an effect makes needless rests there, and does not stop the others.
+  Eigen::VectorXd within_bounds(Eigen::VectorXd coordinates) const;
+
+  /// At `within_bounds(coordinates)`. Not finite outside of the domain.
   Eigen::VectorXd residual(const Eigen::VectorXd& coordinates) const;
   /// The column of the Jacobian of coordinate `i`; `here` is the residual at `coordinates`. By forward differences, backward ones
   /// at the border of the domain; not finite where neither is inside.

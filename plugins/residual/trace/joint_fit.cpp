@@ -65,7 +65,8 @@ Expected<Fit> polish(const FitProblem& problem, const Eigen::VectorXd& coordinat
                                                     }};
   const auto found = numerics::levenberg_marquardt(least_squares, coordinates, kLimits);
   if (!found) return tl::unexpected(found.error());
-  Approach end{found->parameters, found->residual, found->jacobian, found->cost, true};
+  Approach end{problem.within_bounds(found->parameters), found->residual, found->jacobian, found->cost, true};
+  if (end.at != found->parameters) end.jacobian = problem.jacobian(end.at, end.residual);
   if (!end.jacobian.allFinite() || !end.residual.allFinite()) return refused("the search ended at the border of the domain");
   Fit f = fit_at(problem, end);
   f.converged = found->converged;

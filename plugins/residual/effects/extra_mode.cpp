@@ -9,6 +9,8 @@ namespace bodeflow::residual {
 namespace {
 
 constexpr std::size_t kStarts = 3;
+// More damped, the magnitude has no peak: no resonance, but a shape that follows anything broad.
+constexpr double kMostDamping = 0.7;
 
 /// How far line k stands out of the noise of what is missing.
 double significance(const Situation& s, std::size_t k) {
@@ -58,7 +60,7 @@ std::vector<FitParameter> ExtraMode::parameters(const Situation& s) const {
   for (const auto& m : s.missing) size = std::max(size, std::abs(m));
   if (!(size > 0.0)) size = 1.0;
   return {positive("extra_mode_frequency", "Hz").says("resonance"),
-          positive("extra_mode_damping", "1").between(0.0, 1.0).says("damping ratio"),
+          positive("extra_mode_damping", "1").between(0.0, kMostDamping).says("damping ratio"),
           real("extra_mode_real", unit, size).says("real part of the added response at the resonance"),
           real("extra_mode_imaginary", unit, size).says("its imaginary part")};
 }

@@ -21,8 +21,8 @@ void TransferFunctionModel::describe(Describe& d) {
           "parameters have no physical meaning and it has no places: only effects of input, output and response (delay, lag, "
           "mode, "
           "feed-through, offset ...) can be added to it.");
-  d.required<std::int64_t>("order").unit("1").range(1, kHighestOrder).doc("of the denominator");
-  d.required<std::int64_t>("numerator_order").unit("1").range(0, kHighestOrder).doc("at most that of the denominator");
+  d.required<std::int64_t>("order").range(1, kHighestOrder).doc("of the denominator");
+  d.required<std::int64_t>("numerator_order").range(0, kHighestOrder).doc("at most that of the denominator");
   d.required<double>("reference_frequency").unit("Hz").above(0.0).doc("in the middle of the band: coefficients count in it");
   d.parameter("magnitude", 1.0).unit("").above(0.0).doc("typical magnitude of the response");
   describe_timing(d, Hold::band_limited);

@@ -11,7 +11,7 @@ void HoldOutBands::describe(Describe& d) {
           "Every `every`-th band of `band` octaves goes to `held_out`, the first after half as many others; the rest to `kept`. "
           "Neighbouring lines err alike, so that single lines left out would test nothing.");
   d.parameter("band", 1.0 / 3.0).unit("1").above(0.0).doc("width of the bands in octaves");
-  d.parameter("every", std::int64_t{3}).unit("1").range(2, 1000).doc("of how many bands one is held out");
+  d.parameter("every", std::int64_t{3}).range(2, 1000).doc("of how many bands one is held out");
   d.message_in(in).record_type("frequency_response");
   d.message_out(kept).record_type("frequency_response").doc("for the input `fit` of residual.trace");
   d.message_out(held_out).record_type("frequency_response").doc("for its input `select`");

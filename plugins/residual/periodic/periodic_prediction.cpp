@@ -17,8 +17,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Values of a band-limited input for each sample of a simulation or of a map.
+// Values of a band-limited input for each sample: of a map, and of a simulation.
 constexpr int kFine = 4;
+constexpr int kFineSimulated = 2;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 // A response that grows so much from the first line to this part of it is that of an integrator.
 constexpr double kNearDc = 1e-6, kIntegrates = 1e4;
@@ -160,8 +161,8 @@ class Predictor {
     d.periodic = true;
     d.periods = periods_ / input_periods();
     d.signals = signals_ || model_.has(Acts::immittance);
-    d.values_per_sample = held_ ? 1 : kFine;
-    d.input = held_ ? input_ : refined(input_, kFine / fine_);
+    d.values_per_sample = simulated_values();
+    d.input = held_ ? input_ : refined(input_, d.values_per_sample / fine_);
     return d;
   }
 
@@ -176,7 +177,42 @@ class Predictor {
       p_.stored = s->stored.topRows(r_.period);
     }
     if (model_.has(Acts::parallel) || model_.has(Acts::series)) add_paths(y);
+    if (!model_.has(Acts::immittance) && path_.path().matrices()) correct_linear_part(y);
     return y;
+  }
+
+  int simulated_values() const { return held_ ? 1 : fine_ > 1 ? fine_ : kFineSimulated; }
+
+  /// Takes from a simulated output what its chain makes of the linear plant and adds what the linear path says: a simulation
+  /// leaves images of the straight lines between the values of a band-limited input, and lets series effects act behind the
+  /// sampling.
+  void correct_linear_part(Eigen::VectorXd& y) const {
+    const bool paths = model_.has(Acts::parallel) || model_.has(Acts::series);
+    if (held_ && !paths) return;
+    const Hold hold = model_.base->timing().hold;
+    const int values = simulated_values();
+    const double step_s = r_.sample_time_s(), delay_s = model_.delay_s(values_);
+    const SampledPlant simulated(*path_.path().matrices(), path_.path().modes(), hold != Hold::zero_order, step_s, delay_s,
+                                 values);
+    Eigen::VectorXcd lines = coefficients(y);
+    Eigen::MatrixXcd u(input_.rows() / 2 + 1, input_.cols());
+    for (Eigen::Index j = 0; j < input_.cols(); ++j) u.col(j) = coefficients(input_.col(j));
+    const Eigen::Index more = y.size() / (r_.period * input_periods());
+    const double line_hz = r_.sample_rate_hz / static_cast<double>(y.size()), largest = u.cwiseAbs().maxCoeff();
+    for (Eigen::Index k = more; k < lines.size(); k += more) {
+      const auto in = u.row(k / more);
+      if (in.cwiseAbs().maxCoeff() <= 1e-12 * largest) continue;
+      const double f = static_cast<double>(k) * line_hz;
+      Eigen::RowVectorXcd chain = simulated.at(f);
+      if (!held_) chain /= hold_response(Hold::first_order, f, step_s / values);
+      if (paths) {
+        chain[0] += path_.path().parallel(s_at(f)) * hold_response(hold, f, step_s) * std::polar(1.0, -kTwoPi * f * delay_s);
+        chain *= path_.path().series(s_at(f));
+      }
+      const Complex change = ((path_.at(f) - chain) * in.transpose())(0);
+      if (std::isfinite(change.real()) && std::isfinite(change.imag())) lines[k] += change;
+    }
+    y = signal_of(lines, y.size());
   }
 
   /// Parallel and series effects on a simulated output.

@@ -4,6 +4,7 @@
 #include <bodeflow/numerics/fft.hpp>
 #include <cmath>
 
+#include "periodic/drift_free.hpp"
 #include "records/checksum.hpp"
 #include "statistics.hpp"
 
@@ -173,6 +174,17 @@ Expected<void> check(const records::Recording& r, const BaseModel& base) {
   return {};
 }
 
+/// The first value that is not finite, by name.
+Expected<void> check_finite(const Eigen::MatrixXd& samples, const records::Signals& signals, const char* port) {
+  for (Eigen::Index c = 0; c < samples.cols(); ++c)
+    for (Eigen::Index n = 0; n < samples.rows(); ++n)
+      if (!std::isfinite(samples(n, c))) {
+        return refused(std::string(port) + " '" + signals.names[static_cast<std::size_t>(c)] + "' is not finite at sample " +
+                       std::to_string(n));
+      }
+  return {};
+}
+
 void take_samples(const records::Recording& recording, PeriodicRecord& r) {
   const Eigen::Index begin = r.skip * r.period, count = r.periods * r.period;
   records::Checksum checksum;
@@ -197,6 +209,10 @@ void take_samples(const records::Recording& recording, PeriodicRecord& r) {
 
 Expected<PeriodicRecord> periodic_record(const records::Recording& recording, std::vector<double> known, const BaseModel& base) {
   if (auto sound = check(recording, base); !sound) return tl::unexpected(sound.error());
+  if (auto finite = check_finite(recording.input, recording.input_signals, "input"); !finite)
+    return tl::unexpected(finite.error());
+  if (auto finite = check_finite(recording.output, recording.output_signals, "output"); !finite)
+    return tl::unexpected(finite.error());
   PeriodicRecord r;
   r.input_name = recording.input_signals.names[0];
   r.output_name = recording.output_signals.names[0];
@@ -232,7 +248,8 @@ Expected<PeriodicRecord> periodic_record(const records::Recording& recording, st
   }
   auto floor = FloorOfBins::make(s.between_hz, s.between_power);
   if (!floor) return refused("output '" + r.output_name + "': " + floor.error().text);
-  r.floor = std::move(*floor);
+  const auto calm = drift_free_floor(recording.output.col(0).segment(begin, count), r.periods, lines, r.line_hz());
+  r.floor = calm ? lower_floor(*floor, *calm, s.between_hz) : *floor;
   r.output = bins.head((lines - 1) * r.periods + 1);
   r.frequency_hz = Eigen::VectorXd::LinSpaced(r.bins(), 0.0, static_cast<double>(r.bins() - 1)) * bin_hz;
   r.input_lines.resize(lines, recording.input.cols());

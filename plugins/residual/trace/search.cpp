@@ -51,12 +51,17 @@ class Searcher {
   Step try_all(const Examined& before, const Catalogue& catalogue, bool first, bool priced) {
     Step step;
     const Against against{bench_, before, out_.base.select.residual, base_starts_};
-    for (Bound& b : bind_all(catalogue, before.fit.model, values_of(before.fit), bench_.fit)) {
+    std::vector<Bound> all = bind_all(catalogue, before.fit.model, values_of(before.fit), bench_.fit);
+    if (settings_.progress) {
+      const auto fit = std::count_if(all.begin(), all.end(), [](const Bound& b) { return b.refusal.empty(); });
+      settings_.progress("tries " + std::to_string(fit) + " effects" +
+                         (out_.found.empty() ? "" : " beside " + std::to_string(out_.found.size()) + " found before"));
+    }
+    for (Bound& b : all) {
       if (!b.refusal.empty()) {
         if (out_.steps.empty()) out_.refused.push_back(std::move(b));
         continue;
       }
-      if (settings_.progress) settings_.progress("tries " + b.addition.label);
       step.candidates.push_back(try_effect(b.addition, against));
     }
     if (priced) out_.levels.candidates += step.candidates.size();

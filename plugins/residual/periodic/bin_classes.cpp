@@ -15,6 +15,13 @@ namespace {
 // values have the variance 2.08 / n in logarithms and the covariance 1 / n with means over any of these values.
 constexpr double kOwnFloor = 0.08 / 2.08;
 
+// Points and weights of Gauss and Hermite for a standard normal deviate.
+constexpr std::pair<double, double> kNormal[] = {{0.0, 8.0 / 15.0},
+                                                 {1.355626179974266, 0.222075922005613},
+                                                 {-1.355626179974266, 0.222075922005613},
+                                                 {2.856970013872806, 0.011257411327721},
+                                                 {-2.856970013872806, 0.011257411327721}};
+
 double multiple(double mean_square) { return std::sqrt(std::max(mean_square, 0.0)); }
 
 std::vector<Eigen::Index> bins_of(const PeriodicRecord& r, Kind kind) {
@@ -61,8 +68,8 @@ class Tester {
     return ClassTest{name, multiple(ratio), numerics::chi_squared_tail(ratio * freedom, freedom)};
   }
 
-  /// The floor's relative error is shared by neighbours: the chance is its mean over three levels of the floor (Gauss and
-  /// Hermite).
+  /// Chance of such a highest bin. Given the floor's error, bins above x come as in a Poisson process, their number S in the
+  /// mean; the error is one for bins near each other, so S scatters as a mean over as many independent parts as the band has.
   std::optional<ClassTest> peak() const {
     double highest = 0.0, count = 0.0;
     Eigen::Index where = 0;
@@ -77,10 +84,22 @@ class Tester {
       where = l;
     }
     if (count == 0.0) return {};
-    const double spread = std::sqrt(3.0 * r_.floor.relative_variance(Eigen::VectorXd::Constant(1, r_.frequency_hz[where])));
-    const auto chance = [&](double level) { return -std::expm1(count * std::log1p(-std::exp(-level * highest))); };
-    const double p = (4.0 * chance(1.0) + chance(std::exp(spread)) + chance(std::exp(-spread))) / 6.0;
-    return ClassTest{"peak", multiple(highest), std::min(p, 1.0)};
+    std::vector<Eigen::Index> bins = bins_of(r_, Kind::between);
+    const std::vector<Eigen::Index> skirts = bins_of(r_, Kind::skirt);
+    bins.insert(bins.end(), skirts.begin(), skirts.end());
+    const double near = r_.floor.relative_variance(Eigen::VectorXd::Constant(1, r_.frequency_hz[where]));
+    const double parts = std::max(near / r_.floor.relative_variance(frequencies(r_, bins)), 1.0);
+    double mean = 0.0, square = 0.0;  // of a bin's chance, over the floor's error
+    for (const auto& [at, weight] : kNormal) {
+      const double chance = std::exp(-highest * std::exp(at * std::sqrt(near)));
+      mean += weight * chance;
+      square += weight * chance * chance;
+    }
+    const double spread = std::sqrt(std::log1p((square / (mean * mean) - 1.0) / parts));
+    double p = 0.0;
+    for (const auto& [at, weight] : kNormal)
+      p -= weight * std::expm1(-count * mean * std::exp(at * spread - 0.5 * spread * spread));
+    return ClassTest{"peak", multiple(highest), std::clamp(p, 0.0, 1.0)};
   }
 
  private:

@@ -14,7 +14,8 @@ namespace bodeflow::residual {
 /// Method: with r the residual and J its Jacobian, in a fitted record r'r has the degrees of freedom that the fit leaves, rows -
 /// trace(J C J'); in one that was not fitted r'(I + J C J')^-1 r has all of them, C the covariance of the parameters. The noise
 /// floor of the class has 2 / variance degrees of freedom, so the ratio is F distributed. Bins between the lines are what the
-/// floor is made from, so their mean over it scatters less. Peak of m bins: p = 1 - (1 - e^-x)^m. Reference: R. Pintelon, J.
+/// floor is made from, so their mean over it scatters less. Peak of m bins: p = 1 - exp(-m e^-x), in the mean over
+/// the floor's error. Reference: R. Pintelon, J.
 /// Schoukens, System Identification, 2nd ed. 2012, sections 4.3 and 11.3.
 std::vector<ClassTest> test_bins(const PeriodicRecord& record, const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
                                  const Eigen::MatrixXd& covariance, bool fitted);

@@ -13,7 +13,11 @@ namespace {
 // A parameter is one at which the effect vanishes if this part of it leaves less than kGone of the effect.
 constexpr double kNearZero = 1e-5;
 constexpr double kGone = 1e-2;
-constexpr std::size_t kDraws = 2000, kGrid = 24;
+constexpr std::size_t kDraws = 2000;
+constexpr double kAround = 8.0;
+constexpr int kFirstPoints = 7, kIdle = 8;
+// A law is simulated at each, what is linear is not.
+constexpr std::size_t kAttempts = 150, kSlowAttempts = 24;
 constexpr double kTail = 0.02;
 constexpr std::size_t kKeptStarts = 2;
 // Such a p of a single trial is below any level however many trials there were.
@@ -22,7 +26,7 @@ constexpr double kBeyondDoubt = 1e-12;
 constexpr double kNothingNew = 1e-4;
 // Neighbours on a fine grid share this part of their direction: the largest gain between them is then hardly above theirs.
 constexpr double kAlike = 0.8;
-constexpr std::size_t kFineGrid = 64;
+constexpr std::size_t kMostPoints = 64;
 // Of the amplitude at which the Jacobian of an effect is taken: near 0, yet above rounding.
 constexpr double kSmall = 1e-3;
 constexpr double kPi = 3.14159265358979323846;
@@ -66,75 +70,67 @@ Eigen::VectorXd sized(const std::vector<FitParameter>& own, Eigen::VectorXd star
   return start;
 }
 
-/// The parameters that make the effect vanish: each alone, or all of these together.
+/// The parameters that make the effect vanish: one alone, or the fewest of one kind together. Those that may pass through 0 come
+/// first: a width or a ratio makes many an effect vanish too, and is no size.
 std::vector<Eigen::Index> vanishing(const Beside& beside, const std::vector<FitParameter>& own, const Eigen::VectorXd& start) {
   const double whole = beside.change(start).norm();
-  std::vector<Eigen::Index> found;
-  if (!(whole > 0.0)) return found;
+  if (!(whole > 0.0)) return {};
   const auto gone = [&](const Eigen::VectorXd& v) { return beside.change(v).norm() < kGone * whole; };
-  Eigen::VectorXd none = start;
-  std::vector<Eigen::Index> candidates;
-  for (Eigen::Index i = 0; i < start.size(); ++i) {
-    const FitParameter& p = own[static_cast<std::size_t>(i)];
-    if (p.low > 0.0 || p.high < 0.0) continue;
-    Eigen::VectorXd without = start;
-    without[i] *= kNearZero;
-    if (gone(without)) found.push_back(i);
-    none[i] *= kNearZero;
-    candidates.push_back(i);
-  }
-  if (!found.empty() || candidates.empty() || !gone(none)) return found;
-  for (const Eigen::Index i : candidates) {  // those without which the others do nothing either
-    Eigen::VectorXd without = none;
-    without[i] = start[i];
-    if (!gone(without)) found.push_back(i);
-  }
-  return found;
-}
-
-/// Values that a parameter may have where the effect vanishes: its start, and around it.
-std::vector<double> spread(const FitParameter& p, double start) {
-  std::vector<double> values;
-  const bool bounded = std::isfinite(p.low) && std::isfinite(p.high);
-  if (!p.logarithmic && bounded) {
-    for (int n = 0; n < 9; ++n) values.push_back(p.low + (p.high - p.low) * (0.5 + n) / 9.0);
-    return values;
-  }
-  for (const double factor : {1.0 / 8.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
-    const double v = start * factor;
-    if (v >= p.low && v <= p.high) values.push_back(v);
-  }
-  if (values.empty()) values.push_back(start);
-  return values;
-}
-
-/// Points of the parameters that say nothing where the effect vanishes: starts, then all combinations, or a seeded choice.
-std::vector<Eigen::VectorXd> grid(const std::vector<FitParameter>& own, const std::vector<Eigen::Index>& amplitudes,
-                                  const std::vector<Eigen::VectorXd>& starts) {
-  std::vector<Eigen::VectorXd> points(starts.begin(),
-                                      starts.begin() + static_cast<std::ptrdiff_t>(std::min(starts.size(), kGrid / 2)));
-  std::vector<std::pair<Eigen::Index, std::vector<double>>> free;
-  std::size_t combinations = 1;
-  for (Eigen::Index i = 0; i < starts.front().size(); ++i) {
-    if (std::find(amplitudes.begin(), amplitudes.end(), i) != amplitudes.end()) continue;
-    free.emplace_back(i, spread(own[static_cast<std::size_t>(i)], starts.front()[i]));
-    combinations *= free.back().second.size();
-  }
-  if (free.empty()) return {starts.front()};
-  numerics::Random random(1);
-  const bool all = combinations + points.size() <= kGrid;
-  for (std::size_t n = 0; all ? n < combinations : points.size() < kGrid; ++n) {
-    Eigen::VectorXd point = starts.front();
-    std::size_t rest = n;
-    for (const auto& [i, values] : free) {
-      const std::size_t pick =
-          all ? rest % values.size() : static_cast<std::size_t>(random.uniform() * static_cast<double>(values.size()));
-      point[i] = values[std::min(pick, values.size() - 1)];
-      rest /= values.size();
+  const auto without = [&](const std::vector<Eigen::Index>& some) {
+    Eigen::VectorXd v = start;
+    for (const Eigen::Index i : some) v[i] *= kNearZero;
+    return v;
+  };
+  for (const bool logarithmic : {false, true}) {
+    std::vector<Eigen::Index> candidates, alone;
+    for (Eigen::Index i = 0; i < start.size(); ++i) {
+      const FitParameter& p = own[static_cast<std::size_t>(i)];
+      if (p.logarithmic != logarithmic || p.low > 0.0 || p.high < 0.0) continue;
+      candidates.push_back(i);
+      if (gone(without({i}))) alone.push_back(i);
     }
-    points.push_back(point);
+    if (!alone.empty()) return {alone.front()};
+    if (candidates.size() < 2 || !gone(without(candidates))) continue;
+    for (std::size_t n = 0; n < candidates.size();) {  // leave out those that are not needed for it
+      std::vector<Eigen::Index> fewer;
+      for (const Eigen::Index i : candidates)
+        if (i != candidates[n]) fewer.push_back(i);
+      if (!fewer.empty() && gone(without(fewer))) {
+        candidates = fewer;
+      } else {
+        ++n;
+      }
+    }
+    return candidates;
   }
-  return points;
+  return {};
+}
+
+/// Values that a parameter may have where the effect vanishes.
+struct Range {
+  Eigen::Index parameter = 0;
+  double low = 0.0, high = 0.0;
+  bool logarithmic = false;
+
+  /// At that part of the way.
+  double at(double part) const { return logarithmic ? low * std::pow(high / low, part) : low + (high - low) * part; }
+};
+
+/// A frequency: the band of the lines; what is bounded: its bounds; else a factor of 8 around the start.
+Range range_of(Eigen::Index i, const FitParameter& p, double start, const Situation& s) {
+  if (p.unit == "Hz" && s.line_hz.size() > 1 && s.line_hz.back() > s.line_hz.front() && s.line_hz.front() > 0.0)
+    return {i, s.line_hz.front(), s.line_hz.back(), true};
+  if (!p.logarithmic && std::isfinite(p.low) && std::isfinite(p.high)) return {i, p.low, p.high, false};
+  if (start > 0.0) return {i, std::max(p.low, start / kAround), std::min(p.high, start * kAround), true};
+  return {i, std::max(p.low, -kAround * p.scale), std::min(p.high, kAround * p.scale), false};
+}
+
+std::vector<Range> ranges_of(const Addition& effect, const std::vector<Eigen::Index>& amplitudes, const Eigen::VectorXd& start) {
+  std::vector<Range> free;
+  for (Eigen::Index i = 0; i < start.size(); ++i)
+    if (std::find(amplitudes.begin(), amplitudes.end(), i) == amplitudes.end())
+      free.push_back(range_of(i, effect.parameters[static_cast<std::size_t>(i)], start[i], effect.situation));
+  return free;
 }
 
 /// What the effect can do near 0 at one point of its other parameters.
@@ -206,43 +202,61 @@ double alike(const Score& a, const Score& b) {
   return (a.unit.transpose() * b.unit).norm() / std::sqrt(static_cast<double>(a.unit.cols()));
 }
 
-/// Adds points between those, along the one parameter that is free, until neighbours are alike.
-void refine(const Scorer& scorer, Eigen::Index free, std::vector<Score>& scores) {
-  const auto before = [free](const Score& a, const Score& b) { return a.point[free] < b.point[free]; };
-  std::stable_sort(scores.begin(), scores.end(), before);
-  for (std::size_t n = 0; n + 1 < scores.size() && scores.size() < kFineGrid;) {
-    if (alike(scores[n], scores[n + 1]) > kAlike) {
-      ++n;
-      continue;
-    }
-    const double low = scores[n].point[free], high = scores[n + 1].point[free];
-    const double between = low > 0.0 && high > 4.0 * low ? std::sqrt(low * high) : 0.5 * (low + high);
-    if (!(between > low && between < high)) {
-      ++n;
-      continue;
-    }
-    Eigen::VectorXd point = scores[n].point;
-    point[free] = between;
-    Score s = scorer.at(point);
+void add(const Scorer& scorer, const Eigen::VectorXd& point, std::vector<Score>& all) {
+  Score s = scorer.at(point);
+  if (s.unit.cols() > 0) all.push_back(std::move(s));
+}
+
+/// Points along the one parameter that is free, until neighbours are alike.
+void cover_line(const Scorer& scorer, const Range& range, std::vector<Score>& all) {
+  if (all.empty()) return;
+  Eigen::VectorXd point = all.front().point;
+  for (int n = 0; n < kFirstPoints; ++n) {
+    point[range.parameter] = range.at((n + 0.5) / kFirstPoints);
+    add(scorer, point, all);
+  }
+  const auto before = [&](const Score& a, const Score& b) { return a.point[range.parameter] < b.point[range.parameter]; };
+  std::stable_sort(all.begin(), all.end(), before);
+  for (std::size_t n = 0; n + 1 < all.size() && all.size() < kMostPoints;) {
+    const double low = all[n].point[range.parameter], high = all[n + 1].point[range.parameter];
+    const double between = range.logarithmic ? std::sqrt(low * high) : 0.5 * (low + high);
+    point[range.parameter] = between;
+    Score s;
+    if (between > low && between < high && alike(all[n], all[n + 1]) < kAlike) s = scorer.at(point);
     if (s.unit.cols() == 0) {
       ++n;
-      continue;
+    } else {
+      all.insert(all.begin() + static_cast<std::ptrdiff_t>(n) + 1, std::move(s));
     }
-    scores.insert(scores.begin() + static_cast<std::ptrdiff_t>(n) + 1, std::move(s));
   }
 }
 
-/// Scores at starts and on a grid, which is finer where only one parameter is free.
-std::vector<Score> scores(const Scorer& scorer, const std::vector<Eigen::VectorXd>& points,
-                          const std::vector<Eigen::Index>& amplitudes) {
-  std::vector<Score> all;
-  for (const Eigen::VectorXd& point : points) {
+/// Points anywhere in the ranges (seeded), until kIdle of them in a row bring nothing new.
+void cover_volume(const Scorer& scorer, const std::vector<Range>& ranges, std::size_t attempts, std::vector<Score>& all) {
+  if (all.empty()) return;
+  numerics::Random random(1);
+  int idle = 0;
+  for (std::size_t n = 0; n < attempts && idle < kIdle; ++n) {
+    Eigen::VectorXd point = all.front().point;
+    for (const Range& r : ranges) point[r.parameter] = r.at(random.uniform());
     Score s = scorer.at(point);
-    if (s.unit.cols() > 0) all.push_back(std::move(s));
+    if (s.unit.cols() == 0) continue;
+    const bool known = std::any_of(all.begin(), all.end(), [&](const Score& other) { return alike(s, other) > kAlike; });
+    idle = known ? idle + 1 : 0;
+    if (!known) all.push_back(std::move(s));
   }
-  if (all.size() < 2 || static_cast<std::size_t>(points.front().size()) != amplitudes.size() + 1) return all;
-  for (Eigen::Index i = 0; i < points.front().size(); ++i)
-    if (std::find(amplitudes.begin(), amplitudes.end(), i) == amplitudes.end()) refine(scorer, i, all);
+}
+
+/// Scores at the starts, and all over the ranges of what is free.
+std::vector<Score> scores(const Scorer& scorer, const std::vector<Eigen::VectorXd>& starts, const std::vector<Range>& ranges,
+                          std::size_t attempts) {
+  std::vector<Score> all;
+  for (const Eigen::VectorXd& start : starts) {
+    add(scorer, start, all);
+    if (ranges.empty()) break;
+  }
+  if (ranges.size() == 1) cover_line(scorer, ranges.front(), all);
+  if (ranges.size() > 1) cover_volume(scorer, ranges, attempts, all);
   return all;
 }
 
@@ -317,17 +331,18 @@ Null null_distribution(const FitProblem& problem, const Fit& from, const std::ve
     n.freedom = static_cast<double>(problem.layout().size() - from.at.size());
     return n;
   }
-  const std::vector<Eigen::VectorXd> points = grid(effect.parameters, amplitudes, starts);
+  const std::vector<Range> ranges = ranges_of(effect, amplitudes, starts.front());
   const bool own = std::any_of(amplitudes.begin(), amplitudes.end(),
                                [&](Eigen::Index i) { return effect.parameters[static_cast<std::size_t>(i)].each_record; });
   const bool known =
       std::all_of(problem.records().begin(), problem.records().end(), [](const auto& r) { return r->floor_known(); });
   if (own || !known || single(n, gain) < kBeyondDoubt) {
-    n.trials = points.size() > 1 ? static_cast<double>(kFineGrid) : 1.0;
+    n.trials = ranges.empty() ? 1.0 : static_cast<double>(kMostPoints);
     return n;
   }
   const auto per_point = static_cast<Eigen::Index>(amplitudes.size());
-  std::vector<Score> found = scores(Scorer(beside, from, effect.parameters, amplitudes), points, amplitudes);
+  std::vector<Score> found = scores(Scorer(beside, from, effect.parameters, amplitudes), starts, ranges,
+                                    effect.what.linear() ? kAttempts : kSlowAttempts);
   Eigen::MatrixXd unit(problem.rows(), per_point * static_cast<Eigen::Index>(found.size()));
   for (std::size_t g = 0; g < found.size(); ++g)
     unit.middleCols(per_point * static_cast<Eigen::Index>(g), per_point) = found[g].unit;

@@ -5,7 +5,7 @@
 namespace bodeflow::residual {
 
 /// Friction of bending bristles (Canudas de Wit 1995, Olsson 1998): dz/dt = v - k |v| z / g(v), F = k z + d exp(-(v/w)^2)
-/// dz/dt, g(v) = Fc + S exp(-(v/w)^2).
+/// dz/dt, g(v) = Fc (1 + r exp(-(v/w)^2)).
 class LugreFriction final : public Effect {
  public:
   static void describe(DescribeEffect& effect);

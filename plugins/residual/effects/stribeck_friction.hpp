@@ -4,7 +4,7 @@
 
 namespace bodeflow::residual {
 
-/// Dry friction that is greater when it starts: F + S exp(-(v / w)^2) against the movement.
+/// Dry friction that is greater when it starts: F (1 + r exp(-(v / w)^2)) against the movement.
 class StribeckFriction final : public Effect {
  public:
   static void describe(DescribeEffect& effect);

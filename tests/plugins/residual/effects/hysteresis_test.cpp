@@ -107,7 +107,7 @@ TEST_CASE("LuGre friction: is the solution of its differential equation") {
   };
   const double z = integrated(bend, t_end, 200000), v = m.velocity(t_end);
   const double wanted = stiffness * z + damping * fade(v) * bend(t_end, z);
-  const std::vector<double> p = {sliding, stiffness, more, velocity, damping};
+  const std::vector<double> p = {sliding, stiffness, more / sliding, velocity, damping};
   CHECK(course<LugreFriction>(p, m, t_end / 8000, 8000).force.back() == Approx(wanted).epsilon(1e-4));
   CHECK(course<LugreFriction>(p, m, t_end / 400, 400).force.back() == Approx(wanted).epsilon(0.03));
 }
@@ -142,7 +142,7 @@ TEST_CASE("friction and hysteresis: loops close after a while, within the limits
   };
   check(course<DahlFriction>({0.8, 5.0}, sine, turn / steps, 6 * steps), 0.8);
   check(course<BoucWen>({2.0, 0.4, 0.5}, sine, turn / steps, 6 * steps), 0.8);
-  check(course<LugreFriction>({0.8, 20.0, 0.2, 0.1, 0.01}, sine, turn / steps, 6 * steps), 1.0);
+  check(course<LugreFriction>({0.8, 20.0, 0.25, 0.1, 0.01}, sine, turn / steps, 6 * steps), 1.0);
 }
 
 TEST_CASE("friction and hysteresis: no movement from rest ever gains energy") {
@@ -161,7 +161,7 @@ TEST_CASE("friction and hysteresis: no movement from rest ever gains energy") {
       const double h = 2e-3;
       CHECK(course<DahlFriction>({0.8, 5.0}, m, h, steps).work > -1e-6);
       CHECK(course<BoucWen>({2.0, 0.4, 0.5}, m, h, steps).work > -1e-6);
-      CHECK(course<LugreFriction>({0.8, 20.0, 0.2, 0.1, 0.05}, m, h, steps).work > -1e-6);
+      CHECK(course<LugreFriction>({0.8, 20.0, 0.25, 0.1, 0.05}, m, h, steps).work > -1e-6);
     }
   }
 }

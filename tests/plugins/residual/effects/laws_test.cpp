@@ -69,12 +69,12 @@ TEST_CASE("dry friction: is its force in movement, less within what it changes i
 
 TEST_CASE("Stribeck friction: falls from rest to movement, and never so steeply that a step has two solutions") {
   const double third = std::exp(-1.0);
-  CHECK(over_flow<StribeckFriction>({0.4, 0.2, 0.1}, 0.1) == Approx(0.4 + 0.2 * third));
-  CHECK(over_flow<StribeckFriction>({0.4, 0.2, 0.1}, -10.0) == Approx(-0.4));
+  CHECK(over_flow<StribeckFriction>({0.4, 0.5, 0.1}, 0.1) == Approx(0.4 + 0.2 * third));
+  CHECK(over_flow<StribeckFriction>({0.4, 0.5, 0.1}, -10.0) == Approx(-0.4));
   const double gain = 0.5;  // far more than a step should have
   for (double v = -0.5; v < 0.5; v += 1e-3) {
-    const double before = v + gain * over_flow<StribeckFriction>({0.4, 0.2, 1e-3}, v, gain);
-    const double behind = v + 1e-4 + gain * over_flow<StribeckFriction>({0.4, 0.2, 1e-3}, v + 1e-4, gain);
+    const double before = v + gain * over_flow<StribeckFriction>({0.4, 0.5, 1e-3}, v, gain);
+    const double behind = v + 1e-4 + gain * over_flow<StribeckFriction>({0.4, 0.5, 1e-3}, v + 1e-4, gain);
     REQUIRE(behind > before);
   }
 }

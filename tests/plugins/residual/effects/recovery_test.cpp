@@ -133,7 +133,7 @@ TEST_CASE("starts: a fit from them finds dry friction again in data without nois
   recovers("coulomb_friction", kBearing, {0.5});
   recovers("coulomb_friction", kBearing, {6.0});
   recovers("asymmetric_friction", kBearing, {2.0, 3.0});
-  recovers("stribeck_friction", kBearing, {2.0, 1.0, 0.05});
+  recovers("stribeck_friction", kBearing, {2.0, 0.5, 0.05});
 }
 
 TEST_CASE("starts: a fit from them finds friction and hysteresis with a memory again in data without noise") {

@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "../declared_base.hpp"
 #include "all_effects.hpp"
 #include "catch.hpp"
 #include "model/simulate.hpp"
@@ -53,6 +54,37 @@ TEST_CASE("two-mass model: its response is that of the equations of movement") {
     CHECK(std::abs(g(0, 1) / -q[0] - 1.0) < 1e-9);                // a reaction in the motor's bearing brakes
     CHECK(std::abs(g(0, 2) / -q[1] - 1.0) < 1e-9);                // reciprocity: load to motor as motor to load
     CHECK(std::abs(g(0, 3) / (q[1] - q[0]) - 1.0) < 1e-9);        // the coupling pulls both
+  }
+}
+
+TEST_CASE("two-mass model: declared outputs and inputs are those of the equations of movement") {
+  const Complex s(0.0, 2.0 * std::numbers::pi * 25.0);
+  const auto response = [&](const std::vector<Declared>& declared, const Eigen::VectorXd& v) {
+    return plant_response(*declared_base<TwoMass>(declared), v, {}, s)(0, 0);
+  };
+  const Complex motor = angles(kDrive, s)[0];
+  CHECK(std::abs(response({{"output", std::string("motor_speed")}}, kDrive) / (s * motor) - 1.0) < 1e-9);
+  CHECK(std::abs(response({{"input", std::string("current")}, {"torque_constant", 0.25}}, kDrive) / (0.25 * motor) - 1.0) < 1e-9);
+  CHECK(std::abs(response({{"input", std::string("current")}}, kDrive) / motor - 1.0) < 1e-9);
+  Eigen::VectorXd at_motor = kDrive;
+  at_motor[5] = 0.0;
+  const Complex load = angles(at_motor, s)[1];
+  CHECK(std::abs(response({{"output", std::string("load_angle")}}, at_motor.head(5)) / load - 1.0) < 1e-9);
+  CHECK(std::abs(response({{"output", std::string("load_speed")}}, at_motor.head(5)) / (s * load) - 1.0) < 1e-9);
+  CHECK(declared_base<TwoMass>({{"input", std::string("current")}})->parameters()[0].unit == "A*s^2/rad");
+  CHECK(declared_base<TwoMass>()->parameters()[2].unit == "Nm/rad");
+  CHECK_THROWS_WITH(declared_base<TwoMass>({{"torque_constant", 0.25}}),
+                    "torque_constant belongs to a current; input is 'torque'");
+}
+
+TEST_CASE("two-mass model: from the load alone, the start has its resonance and inertia") {
+  const auto base = declared_base<TwoMass>({{"output", std::string("load_angle")}});
+  const MeasuredResponse m = measured([&](Complex s) { return angles(kDrive, s)[1]; });
+  const auto starts = base->starts({&m, 1});
+  REQUIRE(starts.size() == 6);
+  for (const auto& v : starts) {
+    CHECK(v[0] + v[1] == Approx(kDrive[0] + kDrive[1]).epsilon(0.2));
+    CHECK(v[2] * (1.0 / v[0] + 1.0 / v[1]) == Approx(kDrive[2] * (1.0 / kDrive[0] + 1.0 / kDrive[1])).epsilon(0.2));
   }
 }
 

@@ -57,12 +57,12 @@ void FrequencyResponseModel::use_model(const RecordView& record) {
 }
 
 std::vector<FitParameter> FrequencyResponseModel::parameters() const {
-  return gain_parameters(static_cast<int>(response_.size()));
+  return gain_parameters(static_cast<int>(inputs().size()));
 }
 
 std::vector<PlantInput> FrequencyResponseModel::inputs() const {
   std::vector<PlantInput> all;
-  for (std::size_t j = 0; j < response_.size(); ++j) all.push_back({static_cast<int>(j), 0});
+  for (std::size_t j = 0; j < std::max<std::size_t>(response_.size(), 1); ++j) all.push_back({static_cast<int>(j), 0});
   return all;
 }
 

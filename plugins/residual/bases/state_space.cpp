@@ -103,7 +103,7 @@ std::vector<std::string> StateSpaceModel::conventions() const {
 }
 
 std::vector<std::vector<double>> StateSpaceModel::starts(std::span<const MeasuredResponse> measured) const {
-  if (plant_.C.empty() && plant_.D.empty()) fail("state_space needs a record 'model' with the model itself");
+  if (plant_.D.empty()) fail("state_space needs a record 'model' with the model itself");
   const numerics::StateSpace system = system_of(plant_);
   return {gains_near(measured, plant_.inputs, [&system](int j, double f) {
     return numerics::frequency_response(system, Eigen::VectorXd::Constant(1, f)).front()(0, j);
@@ -111,6 +111,7 @@ std::vector<std::vector<double>> StateSpaceModel::starts(std::span<const Measure
 }
 
 bool StateSpaceModel::state_space(const double* v, const double*, LinearPlant& plant) const {
+  if (plant_.D.empty()) return false;  // no model was taken
   plant = plant_;
   const auto q = static_cast<std::size_t>(plant_.inputs);
   for (std::size_t i = 0; i < plant.B.size(); ++i) plant.B[i] *= v[i % q];

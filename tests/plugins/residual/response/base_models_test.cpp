@@ -284,3 +284,18 @@ TEST_CASE("frequency_response: exact at its lines, straight between them, refuse
   far.response = {1.0, 1.0};
   CHECK_THROWS_WITH(base->starts({&far, 1}), "the response of the model ends at 40 Hz, the records at 60 Hz");
 }
+
+TEST_CASE("state_space and frequency_response: without their record they have an input and no plant") {
+  const std::vector<double> one = {1.0};
+  const auto identified = declared_base<StateSpaceModel>();
+  const auto measured = declared_base<FrequencyResponseModel>();
+  LinearPlant plant;
+  Complex response = 0.0;
+  CHECK_FALSE(identified->state_space(one.data(), nullptr, plant));
+  CHECK_FALSE(measured->response(one.data(), nullptr, axis(1.0), &response));
+  for (const BaseModel* base : {static_cast<const BaseModel*>(identified.get()), static_cast<const BaseModel*>(measured.get())}) {
+    CHECK(base->inputs().size() == 1);
+    CHECK(base->parameters().size() == 1);
+    CHECK_THROWS_AS(base->starts({}), Failure);
+  }
+}

@@ -166,13 +166,12 @@ AT(bf_place, flow, 56);
 AT(bf_place, stored, 64);
 AT(bf_place, effort, 72);
 
-SIZE(bf_signals, 48);
-AT(bf_signals, struct_size, 0);
-AT(bf_signals, flow, 8);
-AT(bf_signals, stored, 16);
-AT(bf_signals, time_s, 24);
-AT(bf_signals, step_s, 32);
-AT(bf_signals, gain, 40);
+SIZE(bf_signals, 40);
+AT(bf_signals, flow, 0);
+AT(bf_signals, stored, 8);
+AT(bf_signals, time_s, 16);
+AT(bf_signals, step_s, 24);
+AT(bf_signals, gain, 32);
 
 SIZE(bf_reaction, 24);
 AT(bf_reaction, value, 0);

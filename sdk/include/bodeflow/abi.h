@@ -1,4 +1,4 @@
-/* bodeflow plugin ABI 0.1.
+/* bodeflow plugin ABI 0.3.
  *
  * The border between the engine ("host") and a plugin. Plain C: no exception, C++ object or allocator crosses it.
  * Authors of plugins use <bodeflow/block.hpp>, a header-only C++ layer on this file.
@@ -345,8 +345,6 @@ typedef struct bf_place {
 
 /* What a law sees at its place, at the end of a step of the simulation. */
 typedef struct bf_signals {
-  uint32_t struct_size;
-  uint32_t reserved;
   double flow;
   double stored;
   double time_s; /* since the record began */
@@ -508,10 +506,10 @@ typedef struct bf_base_model {
   /* A record of a model, for a black box. */
   int32_t (*use_model)(void* self, const bf_record* record, const bf_answer* answer);
   int32_t (*facts)(void* self, bf_base_facts* facts, const bf_answer* answer);
-  int32_t (*parameters)(void* self, const bf_answer* answer);  /* answer->parameter for each */
-  int32_t (*places)(void* self, const bf_answer* answer);      /* answer->place for each */
-  int32_t (*known)(void* self, const bf_answer* answer);       /* answer->parameter for each */
-  int32_t (*inputs)(void* self, const bf_answer* answer);      /* answer->input for each */
+  int32_t (*parameters)(void* self, const bf_answer* answer); /* answer->parameter for each */
+  int32_t (*places)(void* self, const bf_answer* answer);     /* answer->place for each */
+  int32_t (*known)(void* self, const bf_answer* answer);      /* answer->parameter for each */
+  int32_t (*inputs)(void* self, const bf_answer* answer);     /* answer->input for each */
   /* answer->text once: of the output over the first input, "" for any. */
   int32_t (*response_unit)(void* self, const bf_answer* answer);
   int32_t (*conventions)(void* self, const bf_answer* answer); /* answer->text for each */

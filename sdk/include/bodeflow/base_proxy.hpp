@@ -60,10 +60,9 @@ class BaseProxy final : public BaseModel {
     return c().response(c().self, v, known, s.real(), s.imag(), reinterpret_cast<double*>(matrix)) != 0;
   }
   Reaction react(const double* v, const double* known, std::size_t place, const Signals& s) const override {
-    const bf_signals signals = borrowed(s);
-    bf_reaction r;
-    c().react(c().self, v, known, place, &signals, &r);
-    return {r.value, r.by_flow, r.by_stored};
+    Reaction r;
+    c().react(c().self, v, known, place, borrowed(s), borrowed(r));
+    return r;
   }
 
  private:

@@ -50,10 +50,9 @@ class EffectProxy final : public Effect {
   }
 
   Reaction react(const double* p, const Signals& s, const double* memory, double* next) const override {
-    const bf_signals signals = borrowed(s);
-    bf_reaction r;
-    c().react(c().self, p, &signals, memory, next, &r);
-    return {r.value, r.by_flow, r.by_stored};
+    Reaction r;
+    c().react(c().self, p, borrowed(s), memory, next, borrowed(r));
+    return r;
   }
   double map(const double* p, double x, double time_s, double* memory) const override {
     return c().map(c().self, p, x, time_s, memory);

@@ -4,6 +4,7 @@
 
 #include <bodeflow/base_model.hpp>
 #include <bodeflow/effect.hpp>
+#include <cstddef>
 
 /// Situations, parameters and places on their way across the border of a plugin: `borrowed` gives the C struct that points into a
 /// value, `owned` copies one.
@@ -70,8 +71,19 @@ inline Place owned(const bf_place& c) {
   return p;
 }
 
-inline bf_signals borrowed(const Signals& s) { return {sizeof(bf_signals), 0, s.flow, s.stored, s.time_s, s.step_s, s.gain}; }
-inline Signals owned(const bf_signals& c) { return {c.flow, c.stored, c.time_s, c.step_s, c.gain}; }
+// Handed over as they are: a copy would cost more than many a law.
+static_assert(sizeof(Signals) == sizeof(bf_signals) && sizeof(Reaction) == sizeof(bf_reaction),
+              "the same doubles in the same order");
+static_assert(offsetof(Signals, stored) == offsetof(bf_signals, stored) &&
+                  offsetof(Signals, time_s) == offsetof(bf_signals, time_s) &&
+                  offsetof(Signals, step_s) == offsetof(bf_signals, step_s) &&
+                  offsetof(Signals, gain) == offsetof(bf_signals, gain) &&
+                  offsetof(Reaction, by_flow) == offsetof(bf_reaction, by_flow) &&
+                  offsetof(Reaction, by_stored) == offsetof(bf_reaction, by_stored),
+              "the same doubles in the same order");
+inline const bf_signals* borrowed(const Signals& s) { return reinterpret_cast<const bf_signals*>(&s); }
+inline const Signals& owned(const bf_signals& c) { return reinterpret_cast<const Signals&>(c); }
+inline bf_reaction* borrowed(Reaction& r) { return reinterpret_cast<bf_reaction*>(&r); }
 
 inline bf_measured_response borrowed(const MeasuredResponse& m) {
   return {sizeof(bf_measured_response), 0, borrowed(m.frequency_hz), borrowed(m.response), borrowed(m.weight), borrowed(m.known)};

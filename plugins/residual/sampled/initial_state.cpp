@@ -6,32 +6,40 @@
 namespace bodeflow::residual {
 namespace {
 
-constexpr int kSteps = 12, kHalvings = 5;
+constexpr int kSteps = 20, kStepsBetween = 2, kHalvings = 5;
+constexpr Eigen::Index kFirst = 25;  // samples a state
 // Of the errors' norm: a step that promises less ends the search. Far below what the differences of a fit resolve.
 constexpr double kSettled = 1e-10;
-constexpr double kWeak = 1e-8;        // of the strongest direction: not shown by the output
-constexpr double kDifference = 1e-5;  // of the output's size
+constexpr double kWeak = 1e-8;  // of the strongest direction: not shown by the output
+// Differences for derivatives, of the output's size: coarse ones look past the kinks of friction, finer ones follow once a step
+// gains little.
+constexpr double kCoarse = 3e-2, kFinest = 1e-5, kFiner = 0.1, kLittle = 0.9;
 
 class Search {
  public:
   Search(const Prediction& prediction, const Stretch& stretch, const Eigen::VectorXd& measured)
-      : prediction_(prediction), stretch_(stretch), measured_(measured), slopes_(prediction.free_response(stretch.count)) {
+      : prediction_(prediction), stretch_(stretch), measured_(measured), uncertain_(prediction.uncertain(stretch)) {}
+
+  /// From that state, or (empty) from the answer of the base model to it.
+  Expected<Eigen::VectorXd> run(const Eigen::VectorXd& start, int steps) {
+    slopes_ = prediction_.free_response(stretch_.count);
+    slopes_.topRows(uncertain_).setZero();
     unit_ = slopes_.colwise().norm().transpose();
     // One unit of a state moves the output by its own size, as far as the linear part tells.
-    const double size = std::max(measured.norm(), 1e-300), usual = size / std::sqrt(static_cast<double>(stretch.count));
+    const double size = std::max(measured_.norm(), 1e-300), usual = size / std::sqrt(static_cast<double>(stretch_.count));
     for (double& u : unit_) u = u > 0.0 ? size / u : usual;
-  }
-
-  Expected<Eigen::VectorXd> run() {
-    auto error = error_at(Eigen::VectorXd::Zero(unit_.size()));
+    state_ = start.size() > 0 ? start : Eigen::VectorXd::Zero(unit_.size());
+    auto error = error_at(state_);
     if (!error) return tl::unexpected(error.error());
-    state_ = Eigen::VectorXd::Zero(unit_.size());
     error_ = std::move(*error);
-    for (int step = 0; step < kSteps; ++step) {
-      if (step > 0 && !differentiate()) break;
-      const auto moved = take_step();
-      if (!moved) return tl::unexpected(moved.error());
-      if (prediction_.linear() || (!*moved && step > 0)) break;
+    for (int step = 0; step < steps; ++step) {
+      if ((step > 0 || start.size() > 0) && !differentiate()) break;
+      const double before = error_.squaredNorm();
+      if (auto tried = take_step(); !tried) return tl::unexpected(tried.error());
+      if (prediction_.linear()) break;
+      const double after = error_.squaredNorm();
+      if (after > kLittle * before) difference_ *= kFiner;
+      if (difference_ < kFinest && !(after < (1.0 - kSettled) * before)) break;
     }
     return state_;
   }
@@ -40,13 +48,15 @@ class Search {
   Expected<Eigen::VectorXd> error_at(const Eigen::VectorXd& state) const {
     auto predicted = prediction_.run(stretch_, state);
     if (!predicted) return tl::unexpected(predicted.error());
-    return Eigen::VectorXd(measured_ - predicted->output);
+    Eigen::VectorXd error = measured_ - predicted->output;
+    error.head(uncertain_).setZero();
+    return error;
   }
 
   bool differentiate() {
     for (Eigen::Index i = 0; i < unit_.size(); ++i) {
       Eigen::VectorXd moved = state_;
-      const double step = kDifference * unit_[i];
+      const double step = difference_ * unit_[i];
       moved[i] += step;
       const auto error = error_at(moved);
       if (!error || !error->allFinite()) return false;
@@ -55,38 +65,47 @@ class Search {
     return true;
   }
 
-  /// False once nothing more is gained.
-  Expected<bool> take_step() {
+  Expected<void> take_step() {
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
     solver.setThreshold(kWeak);
     solver.compute(slopes_ * unit_.asDiagonal());
     Eigen::VectorXd step = unit_.asDiagonal() * solver.solve(error_);
-    if ((slopes_ * step).norm() <= kSettled * measured_.norm()) return false;
     for (int halving = 0; halving <= kHalvings; ++halving, step *= 0.5) {
       const Eigen::VectorXd next = state_ + step;
       auto error = error_at(next);
       if (!error) return tl::unexpected(error.error());
       if (!(error->squaredNorm() < error_.squaredNorm())) continue;
-      const bool gained = error->norm() < (1.0 - kSettled) * error_.norm();
       state_ = next;
       error_ = std::move(*error);
-      return gained;
+      break;
     }
-    return false;
+    return {};
   }
 
   const Prediction& prediction_;
-  const Stretch& stretch_;
-  const Eigen::VectorXd& measured_;
+  const Stretch stretch_;
+  const Eigen::VectorXd measured_;
+  const Eigen::Index uncertain_;
   Eigen::MatrixXd slopes_;
   Eigen::VectorXd unit_, state_, error_;
+  double difference_ = kCoarse;  ///< of the differences that stand for derivatives, in units
 };
 
 }  // namespace
 
 Expected<Eigen::VectorXd> initial_state(const Prediction& prediction, const Stretch& stretch, const Eigen::VectorXd& measured) {
   if (prediction.states() == 0) return Eigen::VectorXd();
-  return Search(prediction, stretch, measured).run();
+  const auto part = [&](Eigen::Index count, const Eigen::VectorXd& start, int steps) {
+    return Search(prediction, {stretch.first, count}, measured.head(count)).run(start, steps);
+  };
+  if (prediction.linear()) return part(stretch.count, Eigen::VectorXd(), 1);
+  Eigen::VectorXd state;
+  for (Eigen::Index count = std::min(kFirst * prediction.states(), stretch.count); count < stretch.count; count *= 2) {
+    auto better = part(count, state, kStepsBetween);
+    if (!better) return better;
+    state = std::move(*better);
+  }
+  return part(stretch.count, state, kSteps);
 }
 
 }  // namespace bodeflow::residual

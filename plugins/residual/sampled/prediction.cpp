@@ -63,6 +63,12 @@ void Prediction::add_parallel() {
   });
 }
 
+Eigen::Index Prediction::uncertain(const Stretch& stretch) const {
+  if (by_spectrum_ || model_->has(Acts::series)) return stretch.count / 2;
+  const Eigen::Index before = sample_delay(model_->delay_s(*values_), record_->sample_time_s()).late - stretch.first;
+  return std::clamp<Eigen::Index>(before, 0, stretch.count / 2);
+}
+
 Simulated Prediction::without_states(const Stretch& stretch) const {
   LinearPlant plant;
   model_->base->state_space(values_->data(), record_->known().data(), plant);

@@ -24,6 +24,9 @@ class Prediction {
   Eigen::Index states() const { return states_; }
   /// The output follows the state in a straight line.
   bool linear() const { return !model_->base->has_laws() && !model_->has(Acts::law) && !model_->has(Acts::output); }
+  /// How many samples at the begin of a stretch are uncertain whatever the state: those that a delayed input before the record
+  /// moves, and the first half where effects in series keep something from before the stretch.
+  Eigen::Index uncertain(const Stretch& stretch) const;
   /// The output (and flows and stored quantities) at the samples of a stretch from that state at its first one.
   Expected<Simulated> run(const Stretch& stretch, const Eigen::VectorXd& state) const;
   /// samples x states: the answer of the base model to each state alone.

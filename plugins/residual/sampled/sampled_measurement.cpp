@@ -18,6 +18,8 @@
 namespace bodeflow::residual {
 namespace {
 
+constexpr Eigen::Index kLeastSamples = 128;  // for a response to start from
+constexpr double kCoarseStep = 1e-3;
 constexpr double kFeedback = 1e-3, kDrift = 4.0;
 constexpr Eigen::Index kMostDrawn = 4000;
 
@@ -40,6 +42,10 @@ class SampledMeasurement final : public Measurement {
     return unexplained(record_, model, values) / unit_;
   }
   Eigen::Index eliminated(const JointModel& model, const Eigen::VectorXd& values) const override;
+  /// The states that segments begin with are found to about 1e-5 where laws have kinks.
+  double difference_step(const JointModel& model) const override {
+    return record_.layout.segments.size() > 1 && model.has(Acts::law) ? kCoarseStep : Measurement::difference_step(model);
+  }
 
   std::vector<ClassTest> tests(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
                                const Eigen::MatrixXd& covariance, bool fitted) const override;
@@ -187,6 +193,9 @@ Expected<void> check(const records::Recording& r, const std::vector<double>& kno
     return refused("the base model has " + records::counted(channels, "input channel") + ", the record has " +
                    std::to_string(r.input.cols()));
   if (r.output.cols() != 1) return refused("the base model has one output, the record has " + std::to_string(r.output.cols()));
+  if (r.samples() < kLeastSamples)
+    return refused("the record has " + std::to_string(r.samples()) + " samples; needed: at least " +
+                   std::to_string(kLeastSamples));
   if (known.size() != base.known().size())
     return refused("the base model needs " + records::counted(static_cast<std::int64_t>(base.known().size()), "known value") +
                    ", found " + std::to_string(known.size()));

@@ -8,8 +8,6 @@
 namespace bodeflow::residual {
 namespace {
 
-// Of the differences that stand for derivatives; a simulation is good to about 1e-9 of its values.
-constexpr double kStep = 1e-5;
 constexpr double kLeastInformation = 1e-12;
 constexpr double kFarthest = 30.0;
 
@@ -19,6 +17,7 @@ FitProblem::FitProblem(const JointModel& model, const Measurements& records, Eig
     : model_(model), records_(records), layout_(model.parameters(), records.size()) {
   for (const auto& r : records) {
     begin_.push_back(rows_);
+    step_ = std::max(step_, r->difference_step(model));
     rows_ += r->rows();
   }
   settled_.assign(static_cast<std::size_t>(layout_.size()), false);
@@ -73,10 +72,10 @@ Eigen::VectorXd FitProblem::difference(Eigen::Index i, double step, const Eigen:
 
 Eigen::VectorXd FitProblem::column(Eigen::Index i, const Eigen::VectorXd& c, const Eigen::VectorXd& here) const {
   Eigen::VectorXd moved = c;
-  moved[i] += kStep;
-  if (within_bounds(moved)[i] < moved[i]) return difference(i, -kStep, c, here);
-  Eigen::VectorXd forward = difference(i, kStep, c, here);
-  return forward.allFinite() ? forward : difference(i, -kStep, c, here);
+  moved[i] += step_;
+  if (within_bounds(moved)[i] < moved[i]) return difference(i, -step_, c, here);
+  Eigen::VectorXd forward = difference(i, step_, c, here);
+  return forward.allFinite() ? forward : difference(i, -step_, c, here);
 }
 
 Eigen::MatrixXd FitProblem::jacobian(const Eigen::VectorXd& c, const Eigen::VectorXd& here) const {
@@ -86,6 +85,7 @@ Eigen::MatrixXd FitProblem::jacobian(const Eigen::VectorXd& c, const Eigen::Vect
 }
 
 Eigen::MatrixXd pseudo_inverse_normal(const Eigen::MatrixXd& jacobian) {
+  if (jacobian.rows() == 0) return Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
   const Eigen::VectorXd scale = jacobian.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const Eigen::MatrixXd scaled = jacobian * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled.transpose() * scaled);

@@ -48,10 +48,11 @@ class FitProblem {
   std::vector<bool> settled_;
   Eigen::VectorXd bounds_;
   Eigen::Index rows_ = 0;
+  double step_ = 1e-5;  ///< of differences
 };
 
 /// (J^T J)^-1 over the directions that the data determine: a direction with less than 1e-12 of the greatest information, in
-/// columns of unit length, is left out.
+/// columns of unit length, is left out. Zero without rows.
 Eigen::MatrixXd pseudo_inverse_normal(const Eigen::MatrixXd& jacobian);
 
 }  // namespace bodeflow::residual

@@ -76,6 +76,9 @@ class Measurement {
   /// `values` of the model's parameters as this record has them. Not finite outside of the domain. Amplitudes and phases of tones
   /// are eliminated inside: 2 of them a frequency.
   virtual Eigen::VectorXd residual(const JointModel& model, const Eigen::VectorXd& values) const = 0;
+  /// Step of the coordinates of a fit (logarithms, or values over their scale) for differences that stand for derivatives of
+  /// `residual` with that model: where it is only good to a part of that, greater than usual.
+  virtual double difference_step(const JointModel& /*model*/) const { return 1e-5; }
   /// Parameters of its own that residual eliminates for that model.
   virtual Eigen::Index eliminated(const JointModel& model, const Eigen::VectorXd& values) const = 0;
 

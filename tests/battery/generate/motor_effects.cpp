@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "generate/core_hysteresis.hpp"
 #include "generate/integrate.hpp"
 #include "generate/sensors.hpp"
 #include "generate/switching.hpp"
@@ -140,6 +141,7 @@ const std::vector<Maker<Motor>>& motor_effects() {
       {"resistance_drift", resistance_drift},
       {"offset", of<Motor, offset>},
       {"clipping", of<Motor, clipping>},
+      {"bouc_wen", core_hysteresis},
   };
   return all;
 }

@@ -87,7 +87,7 @@ Hidden play(const Oscillator& o, const Scale& scale, Random&) {
     for (double& x : fine) x = shown = std::clamp(shown, x - half, x + half);
     return sampled(d, fine);
   };
-  h.values = [=](double strength) { return std::vector<Value>{{"travel", "m", strength * scale.output_rms}}; };
+  h.values = [=](double strength) { return std::vector<Value>{{"half travel", "m", 0.5 * strength * scale.output_rms}}; };
   return h;
 }
 

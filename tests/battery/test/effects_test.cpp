@@ -131,8 +131,8 @@ TEST_CASE("battery: play holds back half of its travel and clips nothing else") 
   const Drive d = drive_for({41}, o.sample_time(), 10.0);
   const Scale scale = scale_of(o, d);
   const Hidden h = find(oscillator_effects(), "play", o, scale);
-  const double travel = h.values(0.2)[0].value;
-  CHECK(peak(run(h, d, 0.2)) == Approx(scale.output_peak - 0.5 * travel).epsilon(1e-3));
+  const double half = h.values(0.2)[0].value;
+  CHECK(peak(run(h, d, 0.2)) == Approx(scale.output_peak - half).epsilon(1e-3));
   const Hidden clip = find(oscillator_effects(), "clipping", o, scale);
   CHECK(peak(run(clip, d, 0.2)) == Approx(clip.values(0.2)[0].value));
 }

@@ -40,10 +40,11 @@ void print_records(const Json& record) {
     list +=
         fmt::format("{}{} {:.3g} {}", i == 0 ? "" : ", ", text_at(attribute(record, "records"), i), levels.at(i), levels.unit);
   if (list.empty()) return;
+  const std::int64_t periods =
+      attribute(record, "periods").is_number_integer() ? attribute(record, "periods").get<std::int64_t>() : 0;
   print_wrapped(
-      fmt::format("measured: {} from {}, {} periods each, noise {:.3g} {}; input rms: {}", text(attribute(record, "output_name")),
-                  text(attribute(record, "input_name")), attribute(record, "periods").dump(),
-                  number(attribute(record, "noise_std")), text(attribute(record, "unit")), list),
+      fmt::format("measured: {} from {}{}; input rms: {}", text(attribute(record, "output_name")),
+                  text(attribute(record, "input_name")), periods > 0 ? fmt::format(", {} periods each", periods) : "", list),
       2);
 }
 

@@ -15,20 +15,25 @@ constexpr double kThreeSigma = 3.0;
 
 /// Classes of lines as their numbers stand in `kind`.
 struct LineClass {
-  double kind;
+  double first, last;  ///< kinds
   const char* title;
 };
-constexpr LineClass kClasses[] = {{1.0, "Excited lines"}, {2.0, "Odd lines"}, {3.0, "Even lines"}};
+constexpr LineClass kClasses[] = {
+    {1.0, 1.0, "Excited lines"}, {2.0, 2.0, "Odd lines"}, {3.0, 3.0, "Even lines"}, {4.0, 5.0, "Between the lines"}};
+constexpr LineClass kAll{0.0, 9.0, ""};
+
+bool within(const LineClass& c, double kind) { return kind >= c.first && kind <= c.last; }
 
 /// The lines of one class, or all where there are no classes; zero frequency has no place on the axis.
-Series lines_of(const Array& frequency, const Array& level, const Array* kind, double wanted, std::string name, int colour) {
+Series lines_of(const Array& frequency, const Array& level, const Array* kind, const LineClass& wanted, std::string name,
+                int colour) {
   Series series;
   series.name = std::move(name);
   series.colour = colour;
   series.markers = kind != nullptr;
   series.line = kind == nullptr;
   for (std::size_t k = 0; k < frequency.size(); ++k) {
-    if (!(frequency.re[k] > 0.0) || (kind != nullptr && kind->re[k] != wanted)) continue;
+    if (!(frequency.re[k] > 0.0) || (kind != nullptr && !within(wanted, kind->re[k]))) continue;
     series.x.push_back(frequency.re[k]);
     series.y.push_back(level.re[k] > 0.0 ? level.re[k] : kNaN);
   }
@@ -62,8 +67,8 @@ bool known(const Array* noise) {
 }
 
 void add_noise(Panel& panel, const Array& frequency, const Array& noise, bool named) {
-  Series level = lines_of(frequency, noise, nullptr, 0, named ? "noise" : "", 5);
-  Series high = lines_of(frequency, scaled(noise, kThreeSigma), nullptr, 0, named ? "three times the noise" : "", 4);
+  Series level = lines_of(frequency, noise, nullptr, kAll, named ? "noise" : "", 5);
+  Series high = lines_of(frequency, scaled(noise, kThreeSigma), nullptr, kAll, named ? "three times the noise" : "", 4);
   panel.series.push_back(thinned(level, true));
   panel.series.push_back(thinned(high, true));
 }
@@ -77,11 +82,11 @@ void add_over_frequency(Page& page, const Record& record, const Array& frequency
   const bool added = !record.texts("effects").empty();
   bool first = true;
   for (const LineClass& c : kClasses) {
-    if (kind != nullptr && std::find(kind->re.begin(), kind->re.end(), c.kind) == kind->re.end()) continue;
+    if (kind != nullptr && std::none_of(kind->re.begin(), kind->re.end(), [&](double k) { return within(c, k); })) continue;
     Panel panel = panel_of(with_unit(kind == nullptr ? "Lines" : c.title, before->unit), Scale::logarithmic);
     panel.height = 190.0;
-    panel.series.push_back(thinned(lines_of(frequency, *before, kind, c.kind, first ? "before" : "", 1), true));
-    if (added) panel.series.push_back(thinned(lines_of(frequency, *after, kind, c.kind, first ? "after" : "", 0), true));
+    panel.series.push_back(thinned(lines_of(frequency, *before, kind, c, first ? "before" : "", 1), true));
+    if (added) panel.series.push_back(thinned(lines_of(frequency, *after, kind, c, first ? "after" : "", 0), true));
     add_noise(panel, frequency, *noise, first);
     chart.panels.push_back(std::move(panel));
     first = false;
@@ -176,7 +181,7 @@ void add_remedied_residual(Page& page, const Record& record) {
   Panel panel = panel_of(with_unit("All lines", before->unit), Scale::logarithmic);
   panel.height = 230.0;
   const auto marked = [&](const Array& at, const Array& level, const char* name, int colour) {
-    Series series = lines_of(at, level, nullptr, 0, name, colour);
+    Series series = lines_of(at, level, nullptr, kAll, name, colour);
     series.markers = true;
     series.line = false;
     return thinned(series, true);

@@ -17,6 +17,10 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 // Frequencies that are tried for resonance and antiresonance, and the most lines that they are compared with.
 constexpr int kTried = 48;
 constexpr std::size_t kCompared = 100;
+// The last step of a number, and the part by which the distance has to fall, for a search to go on.
+constexpr double kFinest = 2e-3, kNearer = 1e-6;
+// Half a step of the frequencies that are tried first.
+constexpr double kGridStep = 0.08;
 // Damping ratios of elastic couplings.
 constexpr double kRatios[] = {0.01, 0.06};
 
@@ -25,21 +29,54 @@ struct Acceleration {
   std::vector<double> omega, log_size;
 };
 
-/// How far the logarithm of the response is from that of gain (s^2 + ...anti) / (s^2 + ...resonance), anti = 0 for 1 in the
-/// numerator; the best gain is found on the way.
-double distance(const Acceleration& a, double anti, double resonance, double ratio, double& gain) {
+/// What a response of two masses looks like: antiresonance (0: none) and resonance [rad/s], damping ratio of the antiresonance,
+/// and the corner below which friction holds more than inertia.
+struct Shape {
+  double anti = 0.0, resonance = 0.0, ratio = 0.0, corner = 0.0;
+  double log_gain = 0.0;  ///< of the response; the best one
+  double off = 0.0;       ///< sum of the squares that are left
+};
+
+/// Fills in gain and distance: the logarithm of the response beside that of
+///   gain s / (s + corner) (s^2 + 2 ratio anti s + anti^2) / (s^2 + 2 ratio resonance^2 / anti s + resonance^2),
+/// the same damper in both; 1 for the numerator and `ratio` of the resonance without an antiresonance.
+Shape compared(const Acceleration& a, Shape shape) {
+  const double ratio = shape.anti > 0.0 ? shape.ratio * shape.resonance / shape.anti : shape.ratio;
   double sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < a.omega.size(); ++i) {
     const Complex s(0.0, a.omega[i]);
-    const Complex numerator = anti > 0.0 ? s * s + 2.0 * ratio * anti * s + anti * anti : 1.0;
-    const Complex denominator = s * s + 2.0 * ratio * resonance * s + resonance * resonance;
-    const double off = a.log_size[i] - std::log(std::abs(numerator / denominator));
+    const Complex numerator =
+        shape.anti > 0.0 ? s * s + 2.0 * shape.ratio * shape.anti * s + shape.anti * shape.anti : Complex(1.0);
+    const Complex denominator = (s * s + 2.0 * ratio * shape.resonance * s + shape.resonance * shape.resonance);
+    const double off = a.log_size[i] - std::log(std::abs(numerator * s / (denominator * (s + shape.corner))));
     sum += off;
     squares += off * off;
   }
   const double n = static_cast<double>(a.omega.size());
-  gain = std::exp(sum / n);
-  return squares - sum * sum / n;
+  shape.log_gain = sum / n;
+  shape.off = squares - sum * sum / n;
+  return shape;
+}
+
+/// The shape that is nearest in its neighbourhood: each number in turn a step up or down while that is nearer, then half the
+/// step.
+Shape refined(const Acceleration& a, Shape best) {
+  for (double step = kGridStep; step > kFinest; step *= 0.5) {
+    for (bool nearer = true; nearer;) {
+      nearer = false;
+      for (double Shape::*number : {&Shape::anti, &Shape::resonance, &Shape::ratio, &Shape::corner}) {
+        for (const double factor : {std::exp(step), std::exp(-step)}) {
+          Shape tried = best;
+          tried.*number *= factor * (number == &Shape::ratio || number == &Shape::corner ? factor * factor : 1.0);
+          tried = compared(a, tried);
+          if (!(tried.off < best.off * (1.0 - kNearer)) || tried.anti >= tried.resonance) continue;
+          best = tried;
+          nearer = true;
+        }
+      }
+    }
+  }
+  return best;
 }
 
 Place place(const char* name, const char* kind, const std::string& reaction_unit) {
@@ -102,10 +139,8 @@ std::vector<std::string> TwoMass::conventions() const {
   return words;
 }
 
-std::vector<double> TwoMass::values(double anti, double resonance, double inertia, double damping_ratio, double lowest) const {
-  const double ratio = anti / resonance, motor = inertia * ratio * ratio, load = inertia - motor;
-  // Friction that hardly shows at the lowest line.
-  const double friction = 0.05 * lowest * inertia;
+std::vector<double> TwoMass::values(double anti, double resonance, double inertia, double damping_ratio, double corner) const {
+  const double ratio = anti / resonance, motor = inertia * ratio * ratio, load = inertia - motor, friction = corner * inertia;
   std::vector<double> v = {motor, load, anti * anti * load, 2.0 * damping_ratio * anti * load, load_ ? friction : 0.5 * friction};
   if (!load_) v.push_back(0.5 * friction);
   return v;
@@ -131,20 +166,22 @@ std::vector<std::vector<double>> TwoMass::starts(std::span<const MeasuredRespons
   const auto tried = [&](int i) { return lowest * std::exp(step * i); };
   std::vector<std::vector<double>> found;
   for (const double ratio : kRatios) {
-    double best = std::numeric_limits<double>::infinity(), best_gain = 1.0, anti = 0.0, resonance = 0.0;
+    Shape best;
+    best.off = std::numeric_limits<double>::infinity();
     for (int r = 1; r < kTried; ++r) {
       for (int z = load_ ? r - 1 : 0; z < r; ++z) {
-        double gain = 1.0;
-        const double off = distance(a, load_ ? 0.0 : tried(z), tried(r), ratio, gain);
-        if (off < best) best = off, best_gain = gain, anti = tried(z), resonance = tried(r);
+        const Shape shape = compared(a, {load_ ? 0.0 : tried(z), tried(r), ratio, 0.05 * lowest});
+        if (shape.off < best.off) best = shape;
       }
     }
+    best = refined(a, best);
+    const double gain = std::exp(best.log_gain), over = best.resonance * best.resonance / gain;
     if (!load_) {
-      found.push_back(values(anti, resonance, resonance * resonance / (best_gain * anti * anti), ratio, lowest));
+      found.push_back(values(best.anti, best.resonance, over / (best.anti * best.anti), best.ratio, best.corner));
       continue;
     }
     for (const double share : {0.5, 0.2, 0.8})  // of the motor in the inertia
-      found.push_back(values(resonance * std::sqrt(share), resonance, resonance * resonance / best_gain, ratio, lowest));
+      found.push_back(values(best.resonance * std::sqrt(share), best.resonance, over, best.ratio, best.corner));
   }
   return found;
 }

@@ -26,8 +26,9 @@ class TwoMass final : public BaseModel {
   std::string effort_unit() const { return current_ && torque_constant_ <= 0.0 ? "A" : "Nm"; }
   /// What a unit of the input is in units of the effort.
   double effort_of_input() const { return current_ && torque_constant_ > 0.0 ? torque_constant_ : 1.0; }
-  /// Starting values for a response with that resonance and antiresonance [rad/s] and inertia in all.
-  std::vector<double> values(double anti, double resonance, double inertia, double damping_ratio, double lowest) const;
+  /// Starting values for a response with that resonance and antiresonance [rad/s], inertia in all, damping ratio of the
+  /// antiresonance, and corner of friction over inertia [rad/s].
+  std::vector<double> values(double anti, double resonance, double inertia, double damping_ratio, double corner) const;
 
   bool current_ = false;
   bool load_ = false;

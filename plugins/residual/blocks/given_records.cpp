@@ -140,12 +140,12 @@ class Known {
 };
 
 Expected<std::shared_ptr<const Measurement>> measurement_of(const Given& g, const std::string& name, Engine engine,
-                                                            const BaseModel& base, Known& known) {
+                                                            const BaseModel& base, Known& known, double segment_s) {
   auto made = [&]() -> Expected<std::shared_ptr<const Measurement>> {
     if (const auto* response = std::get_if<ResponseData>(&g)) return response_measurement(*response, name, known.of(name), base);
     const Recording& r = std::get<Recording>(g);
     if (engine == Engine::periodic) return periodic_measurement(r, name, known.of(name), base);
-    return sampled_measurement(r, name, known.of(name), base);
+    return sampled_measurement(r, name, known.of(name), base, {segment_s});
   }();
   if (!made) return refused("record '" + name + "': " + made.error().text);
   return made;
@@ -185,17 +185,17 @@ Expected<GivenRecords> with_all_parts(GivenRecords g, Engine engine) {
 }
 
 Expected<TraceData> measurements_of(const GivenRecords& g, Engine engine, const BaseModel& base,
-                                    const std::vector<std::string>& statements) {
+                                    const std::vector<std::string>& statements, double segment_s) {
   Known known(base, statements);
   TraceData data;
   for (std::size_t n = 0; n < g.fit.size(); ++n) {
-    auto m = measurement_of(g.fit[n], "fit " + std::to_string(n + 1), engine, base, known);
+    auto m = measurement_of(g.fit[n], "fit " + std::to_string(n + 1), engine, base, known, segment_s);
     if (!m) return tl::unexpected(m.error());
     data.fit.push_back(std::move(*m));
   }
-  auto select = measurement_of(*g.select, "select", engine, base, known);
+  auto select = measurement_of(*g.select, "select", engine, base, known, segment_s);
   if (!select) return tl::unexpected(select.error());
-  auto test = measurement_of(*g.test, "test", engine, base, known);
+  auto test = measurement_of(*g.test, "test", engine, base, known, segment_s);
   if (!test) return tl::unexpected(test.error());
   data.select = std::move(*select);
   data.test = std::move(*test);

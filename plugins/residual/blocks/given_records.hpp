@@ -32,8 +32,9 @@ Engine engine_for(const GivenRecords& records, Engine wished);
 Expected<GivenRecords> with_all_parts(GivenRecords records, Engine engine);
 
 /// The records as measurements, "fit 1", "fit 2" ..., "select", "test". `known`: "record: name=value unit". Throws Failure for a
-/// statement that is wrong. Errors: those of the measurements, with the record's name.
+/// statement that is wrong. `segment_s`: of records over time, see SampledOptions. Errors: those of the measurements, with the
+/// record's name.
 Expected<TraceData> measurements_of(const GivenRecords& records, Engine engine, const BaseModel& base,
-                                    const std::vector<std::string>& known);
+                                    const std::vector<std::string>& known, double segment_s = 0.0);
 
 }  // namespace bodeflow::residual

@@ -112,6 +112,9 @@ void TraceBlock::describe(Describe& d) {
   d.parameter("engine", "auto")
       .choices({"auto", "periodic", "sampled"})
       .doc("periodic: against the noise between the lines; sampled: over time; auto: periodic where all records repeat a period");
+  d.optional<double>("segment").unit("s").above(0.0).doc(
+      "of records over time: length of the parts that are simulated from a state of their own; without it the whole record where "
+      "the plant settles, short parts where it integrates; longer than the record: the whole record");
   d.parameter("alpha", 0.01)
       .unit("1")
       .range(1e-6, 0.2)
@@ -120,7 +123,7 @@ void TraceBlock::describe(Describe& d) {
       .unit("1")
       .range(0.5, 1)
       .doc("part of what is missing that named effects have to explain, where what they leave is not noise");
-  d.parameter("most_effects", std::int64_t{3}).unit("1").range(1, 5).doc("that may be added");
+  d.parameter("most_effects", std::int64_t{3}).range(1, 5).doc("that may be added");
   d.message_in(fit).doc("recordings or frequency responses, one or more");
   d.message_in(select).optional().doc("one; without it a part of what arrives at `fit` is set aside");
   d.message_in(test).optional().doc("one; without it a part of what arrives at `fit` is set aside");
@@ -138,6 +141,7 @@ void TraceBlock::configure(const Parameters& p) {
   known_ = p.texts("known");
   const std::string& engine = p.text("engine");
   engine_ = engine == "periodic" ? Engine::periodic : engine == "sampled" ? Engine::sampled : Engine::automatic;
+  segment_s_ = p.has("segment") ? p.number("segment") : 0.0;
   settings_.alpha = p.number("alpha");
   settings_.share = p.number("share");
   settings_.most_effects = static_cast<std::size_t>(p.integer("most_effects"));
@@ -171,7 +175,7 @@ void TraceBlock::finish(Io& io) {
     whole = with_all_parts(given_, engine);
   }
   const GivenRecords records = valid(std::move(whole));
-  const TraceData data = valid(measurements_of(records, engine, *made, known_));
+  const TraceData data = valid(measurements_of(records, engine, *made, known_, segment_s_));
   TraceSettings settings = settings_;
   settings.known = choice.all();
   settings.progress = [this](const std::string& text) { log_info(text); };

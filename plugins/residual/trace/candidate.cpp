@@ -14,6 +14,8 @@ constexpr std::size_t kSearches = 2;
 // The linear look promises so much more than was found.
 constexpr double kMoreThere = 1.05;
 constexpr int kFirstSteps = 3, kMoreSteps = 10;
+// What chance does more often than that is not looked at more closely near the noise.
+constexpr double kWorthASearch = 0.05;
 // In units of minus twice the log likelihood: what chance alone moves by more.
 constexpr double kLeastFallOfCost = 0.05;
 // A base that leaves more than this many times the noise may have been pulled far by what is missing: its own starts help.
@@ -62,7 +64,6 @@ Approach search(const Against& against, FitProblem& problem, const std::vector<E
     approach(problem, kFirstSteps, kLeastFallOfCost, false, a);
     if (!best.started || a.cost < best.cost) best = std::move(a);
   }
-  if (best.started) approach(problem, kMoreSteps, kLeastFallOfCost, false, best);
   return best;
 }
 
@@ -136,6 +137,25 @@ void measure(const Against& against, Fit f, Candidate& c) {
   c.added_share = c.share - share_of(select.gain(against.original_select, before.select.residual));
 }
 
+/// The candidate where the linear look finds most, if that is no more than chance finds; false else.
+bool look_only(const Against& against, const FitProblem& problem, Candidate& c) {
+  const double p = c.null.p_of_look();
+  if (p < kWorthASearch) return false;
+  const Fit& from = against.before.fit;
+  Approach a;
+  const std::vector<double> own(c.null.nearest.begin(), c.null.nearest.end());
+  a.at = extended(from, problem.layout(), own);
+  a.residual = problem.residual(a.at);
+  if (!a.residual.allFinite()) return false;
+  a.cost = a.residual.squaredNorm();
+  a.jacobian = Eigen::MatrixXd::Zero(0, a.at.size());
+  measure(against, fit_at(problem, a), c);
+  if (!c.tried) return false;
+  c.fit_gain = c.null.most;
+  c.p = p;
+  return true;
+}
+
 }  // namespace
 
 double Examined::smallest_p() const {
@@ -181,20 +201,36 @@ Candidate try_effect(const Addition& addition, const Against& against) {
   model.additions.push_back(addition);
   FitProblem problem(model, against.bench.fit, settled);
   const std::vector<std::vector<double>> own = addition.effect->starts(addition.situation);
+  std::vector<Eigen::VectorXd> starts;
+  for (const auto& values : own)
+    starts.push_back(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  if (against.near_noise) {
+    c.null = null_distribution(problem, against.before.fit, starts, 0.0);
+    if (c.null.looked && look_only(against, problem, c)) return c;
+  }
   Approach best = search(against, problem, points(against, problem, own));
   if (!best.started) {
     c.reason = "could not be fitted: the model with it can't be computed at any start";
     return c;
   }
-  std::vector<Eigen::VectorXd> starts;
-  for (const auto& values : own)
-    starts.push_back(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
-  const double gain = against.before.fit.chi2 - best.cost;
-  c.null = null_distribution(problem, against.before.fit, starts, gain);
+  if (!c.null.looked) c.null = null_distribution(problem, against.before.fit, starts, against.before.fit.chi2 - best.cost);
   search_on(against, problem, c.null, best);
   measure(against, fit_at(problem, best), c);
   c.with.fit.jacobian.resize(0, 0);  // as many as there are candidates: it is formed again where it is needed
   return c;
+}
+
+void go_on(const Against& against, Candidate& c) {
+  if (!c.tried || c.with.fit.polished) return;
+  const JointModel model = c.with.fit.model;
+  const auto own = static_cast<Eigen::Index>(c.addition.parameters.size());
+  FitProblem problem(model, against.bench.fit, static_cast<Eigen::Index>(model.parameters().size()) - own);
+  problem.bound_base(c.with.fit.at);
+  Approach a = approach_from(problem, c.with.fit.at, against.before.fit.jacobian);
+  approach(problem, kMoreSteps, kLeastFallOfCost, true, a);
+  if (!a.started || !(a.cost < c.with.fit.chi2)) return;
+  measure(against, fit_at(problem, a), c);
+  c.with.fit.jacobian.resize(0, 0);
 }
 
 void settle(const Against& against, Candidate& c) {

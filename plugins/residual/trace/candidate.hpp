@@ -67,10 +67,14 @@ struct Against {
   const Examined& before;                  ///< with the effects found so far
   const Eigen::VectorXd& original_select;  ///< residual of the base model alone on the selecting record
   const std::vector<Eigen::VectorXd>& base_starts;
+  bool near_noise = false;  ///< what is left passes the class tests: small effects act linearly
 };
 
-/// The candidate after a quick search from its starts, numbers filled in and not judged.
+/// The candidate after a quick search from its starts, numbers filled in and not judged. Near the noise one that chance makes as
+/// good more than once in twenty times is not searched: its gain is that of the linear look.
 Candidate try_effect(const Addition& addition, const Against& against);
+/// Goes on with a promising one.
+void go_on(const Against& against, Candidate& c);
 /// Goes on to the optimum.
 void settle(const Against& against, Candidate& c);
 /// Sets accepted and reason.

@@ -17,7 +17,7 @@ constexpr std::size_t kDraws = 2000;
 constexpr double kAround = 8.0;
 constexpr int kFirstPoints = 7, kIdle = 8;
 // A law is simulated at each, what is linear is not.
-constexpr std::size_t kAttempts = 150, kSlowAttempts = 24;
+constexpr std::size_t kAttempts = 150, kSlowAttempts = 16;
 constexpr double kTail = 0.02;
 constexpr std::size_t kKeptStarts = 2;
 // Such a p of a single trial is below any level however many trials there were.
@@ -313,6 +313,8 @@ double Null::p(double gain) const {
   return with_trials(single(*this, gain), trials * between_bins);
 }
 
+double Null::p_of_look() const { return opposite > 0.0 ? 1.0 - p(opposite) : p(most); }
+
 Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& own_starts, double gain) {
   const Addition& effect = problem.model().additions.back();
   if (effect.what.acts == Acts::tone) return of_tones(problem, from, own_starts.front());
@@ -346,12 +348,18 @@ Null null_distribution(const FitProblem& problem, const Fit& from, const std::ve
   Eigen::MatrixXd unit(problem.rows(), per_point * static_cast<Eigen::Index>(found.size()));
   for (std::size_t g = 0; g < found.size(); ++g)
     unit.middleCols(per_point * static_cast<Eigen::Index>(g), per_point) = found[g].unit;
+  if (found.empty()) return n;
   std::stable_sort(found.begin(), found.end(), [](const Score& x, const Score& y) { return x.gain > y.gain; });
-  for (const Score& s : found)
-    if (s.start && n.starts.size() < kKeptStarts) {
-      n.starts.push_back(*s.start);
-      n.most = std::max(n.most, s.gain);
-    }
+  for (const Score& s : found) {
+    if (!s.start || n.starts.size() == kKeptStarts) continue;
+    n.starts.push_back(*s.start);
+    n.most = std::max(n.most, s.gain);
+  }
+  n.looked = true;
+  n.nearest = n.starts.empty() ? found.front().point : n.starts.front();
+  if (n.starts.empty())
+    for (const Eigen::Index i : amplitudes) n.nearest[i] *= kSmall;
+  if (n.starts.empty() && found.size() == 1) n.opposite = found.front().gain;
   if (unit.cols() <= per_point) return n;
   n.simulated = largest_gains(unit, per_point, n.one_sided && per_point == 1);
   const double limit = n.simulated[static_cast<std::size_t>((1.0 - kTail) * static_cast<double>(kDraws))];

@@ -17,10 +17,15 @@ struct Null {
 
   /// Values of the effect's parameters where a linear look at the residual finds most, best first.
   std::vector<Eigen::VectorXd> starts;
-  double most = 0.0;  ///< what it finds there
+  double most = 0.0;        ///< what it finds there
+  bool looked = false;      ///< there was such a look
+  double opposite = 0.0;    ///< what it finds where the only direction there is has the wrong sign
+  Eigen::VectorXd nearest;  ///< where it finds most, next to nothing if that is nowhere
 
   /// The probability of so much gain, or more.
   double p(double gain) const;
+  /// That of what the look found.
+  double p_of_look() const;
 };
 
 /// Simulates it for the effect that was added last, `from` the fit without it; `starts` and `found` are values of its parameters.

@@ -1,6 +1,7 @@
 #include "trace/search.hpp"
 
 #include <algorithm>
+#include <bodeflow/numerics/chi_squared.hpp>
 #include <cmath>
 
 #include "records/signals.hpp"
@@ -10,6 +11,8 @@ namespace {
 
 // A candidate that gains less than this part of what the best one does is no rival: it is not fitted to the end.
 constexpr double kRival = 0.5;
+// One that has gained so much of it after a few steps may still overtake.
+constexpr double kPromising = 0.2;
 constexpr std::size_t kMostSettled = 6;
 // One that chance would do once in so many times its level may be a finding once it is fitted to the end.
 constexpr double kNearLevel = 100.0;
@@ -50,7 +53,8 @@ class Searcher {
   /// All that can be tried beside a model, best first, the promising ones fitted to the end.
   Step try_all(const Examined& before, const Catalogue& catalogue, bool first, bool priced) {
     Step step;
-    const Against against{bench_, before, out_.base.select.residual, base_starts_};
+    const bool near = floor_known_ && !before.tests.empty() && before.smallest_p() > out_.levels.p_class();
+    const Against against{bench_, before, out_.base.select.residual, base_starts_, near};
     std::vector<Bound> all = bind_all(catalogue, before.fit.model, values_of(before.fit), bench_.fit);
     if (settings_.progress) {
       const auto fit = std::count_if(all.begin(), all.end(), [](const Bound& b) { return b.refusal.empty(); });
@@ -66,6 +70,7 @@ class Searcher {
     }
     if (priced) out_.levels.candidates += step.candidates.size();
     step.levels = out_.levels;
+    go_on_with_rivals(against, step);
     settle_rivals(against, step);
     for (Candidate& c : step.candidates) judge(step.levels, first, floor_known_, c);
     rank(step.candidates);
@@ -79,6 +84,13 @@ class Searcher {
       if (a.tried != b.tried) return a.tried;
       return a.merit() > b.merit();
     });
+  }
+
+  static void go_on_with_rivals(const Against& against, Step& step) {
+    double most = 0.0;
+    for (const Candidate& c : step.candidates) most = std::max(most, c.fit_gain);
+    for (Candidate& c : step.candidates)
+      if (c.fit_gain > kPromising * most && c.p < kNearLevel * step.levels.p_candidate()) go_on(against, c);
   }
 
   void settle_rivals(const Against& against, Step& step) const {
@@ -116,6 +128,18 @@ class Searcher {
       }
     }
     std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.explains && !b.explains; });
+    prefer_simpler(step);
+  }
+
+  /// Moves to the front what explains with fewer parameters, where the more of the best say nothing: a likelihood ratio that
+  /// chance makes with a probability above alpha / 2.
+  void prefer_simpler(Step& step) const {
+    auto& all = step.candidates;
+    for (std::size_t n = 1; n < all.size() && all[n].explains; ++n) {
+      const double more = all.front().price - all[n].price, gain = all.front().fit_gain - all[n].fit_gain;
+      if (!(more > 0.0) || numerics::chi_squared_tail(gain, more) < out_.levels.alpha / 2.0) continue;
+      std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n), all.begin() + static_cast<std::ptrdiff_t>(n) + 1);
+    }
   }
 
   /// Adds the best candidate; false where the search is over.

@@ -75,8 +75,10 @@ TEST_CASE("a plugin's entry says the same as its note") {
   std::uint32_t count = 0;
   const bf_factory* const* factories = plugin->factories(&host, &count);
   REQUIRE(factories != nullptr);
-  REQUIRE(count == 3);
+  REQUIRE(count == 12);
   CHECK(std::string(factories[0]->kind) == "block");
   CHECK(std::string(factories[0]->id) == "good.gain");
+  CHECK(std::string(factories[3]->kind) == "effect");
+  CHECK(std::string(factories[11]->kind) == "base_model");
   CHECK(factories == plugin->factories(&host, &count));
 }

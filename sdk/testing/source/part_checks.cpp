@@ -1,18 +1,28 @@
 #include "part_checks.hpp"
 
+#include <algorithm>
 #include <bodeflow/units.hpp>
-#include <bodeflow/words.hpp>
 #include <cmath>
 #include <cstring>
 #include <set>
 
 namespace bodeflow::testing {
+namespace {
+
+/// A symbol of physics, "Lm_beta": a letter, then letters, digits and _.
+bool is_symbol(const std::string& name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (name.empty() || !is_letter(name[0])) return false;
+  return std::all_of(name.begin(), name.end(), [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+}  // namespace
 
 std::string problem_of(const std::vector<FitParameter>& parameters) {
   std::set<std::string> names;
   for (const FitParameter& p : parameters) {
     const std::string what = "parameter '" + p.name + "': ";
-    if (!detail::is_word(p.name)) return what + "name is not a word of lower-case letters, digits and _";
+    if (!is_symbol(p.name)) return what + "name is not a word of letters, digits and _";
     if (!names.insert(p.name).second) return what + "name stands twice";
     if (!is_known_unit(p.unit)) return what + "unit '" + p.unit + "' is unknown";
     if (!(p.low < p.high)) return what + "nothing lies between its bounds";

@@ -126,8 +126,8 @@ TEST_CASE(
   const std::string page = page_of({{"trace", record}});
   for (const char* text :
        {"delay can&#39;t be told from skin_effect with these data.", "to tell a delay from a skin effect",
-        "Added: dead_time and delay", "with dead_time and delay, test record", "Effects of the catalogue that could not be tried: 1",
-        "ranks the candidates", "0123456789abcdef<", "Input, rms [V]"})
+        "Added: dead_time and delay", "with dead_time and delay, test record",
+        "Effects of the catalogue that could not be tried: 1", "ranks the candidates", "0123456789abcdef<", "Input, rms [V]"})
     CHECK_THAT(page, Contains(text));
 }
 

@@ -116,7 +116,9 @@ void print_candidates(const Json& record) {
              &steps = attribute(record, "candidate_steps");
   const Values share = values(record, "candidate_share");
   if (!names.is_array()) return;
-  fmt::print("  {}\n", dim(fmt::format("{:<{}} {}", "candidate", kName, "explains")));
+  std::size_t width = kName;
+  for (std::size_t i = 0; i < names.size(); ++i) width = std::max(width, text_at(names, i).size());
+  fmt::print("  {}\n", dim(fmt::format("{:<{}} {}", "candidate", width, "explains")));
   std::size_t of_step = 0, left_out = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto step = [&](std::size_t n) { return steps.is_array() && n < steps.size() ? number(steps[n]) : 1.0; };
@@ -128,7 +130,7 @@ void print_candidates(const Json& record) {
       ++left_out;
       continue;
     }
-    fmt::print("  {:<{}} {:>5.1f} %  {}\n", text_at(names, i), kName, 100.0 * share.at(i), text_at(reasons, i));
+    fmt::print("  {:<{}} {:>5.1f} %  {}\n", text_at(names, i), width, 100.0 * share.at(i), text_at(reasons, i));
   }
   if (left_out > 0) fmt::print("  {}\n", dim(fmt::format("and {} more, with their reasons, in the report", left_out)));
 }

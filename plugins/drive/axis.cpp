@@ -9,8 +9,8 @@ namespace bodeflow::drive {
 namespace {
 
 constexpr double kLongestStep = 0.025;  // of 1 / (fastest rate): an error of 1e-10 a step
-constexpr int kHalvings = 48;          // of a step that ends in another state
-constexpr int kMostChanges = 1000;     // in a sample; more: the torques are beyond what the axis is made for
+constexpr int kHalvings = 48;           // of a step that ends in another state
+constexpr int kMostChanges = 40;        // in a sample; more: the torques are beyond what the axis is made for
 const double kProgression = std::acosh(1.5);
 
 int sign(double v) { return v > 0 ? 1 : (v < 0 ? -1 : 0); }

@@ -28,9 +28,7 @@ std::vector<FitParameter> Creep::parameters(const Situation& s) const {
               .says("growth of the stiffness in a decade of frequency")};
 }
 
-std::vector<std::vector<double>> Creep::starts(const Situation& s) const {
-  return {{0.0}, {0.1 * lines::coefficient_of(s)}};
-}
+std::vector<std::vector<double>> Creep::starts(const Situation& s) const { return {{0.0}, {0.1 * lines::coefficient_of(s)}}; }
 
 std::string Creep::sentence(std::span<const double> value, std::span<const double> std, const Situation& s) const {
   return "creep of the suspension, whose stiffness grows by " +

@@ -21,8 +21,7 @@ std::vector<FitParameter> EddyShunt::parameters(const Situation&) const {
 }
 
 std::vector<std::vector<double>> EddyShunt::starts(const Situation& s) const {
-  const double inductance = 1.0 / lines::coefficient_of(s), middle = lines::middle_omega(s),
-               highest = lines::highest_omega(s);
+  const double inductance = 1.0 / lines::coefficient_of(s), middle = lines::middle_omega(s), highest = lines::highest_omega(s);
   return {{inductance, inductance * middle},
           {inductance, inductance * std::sqrt(middle * highest)},
           {3.0 * inductance, inductance * highest}};

@@ -1,7 +1,6 @@
 #include "fake_measurement.hpp"
 
 #include <Eigen/Dense>
-
 #include <bodeflow/numerics/chi_squared.hpp>
 #include <bodeflow/numerics/random.hpp>
 

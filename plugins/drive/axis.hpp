@@ -55,6 +55,8 @@ class Axis {
  public:
   Axis(const AxisParameters& parameters, const AxisPhysics& physics, double sample_s);
 
+  /// Steps of its integrator in a sample, at least: they follow from the fastest rate.
+  double steps_per_sample() const { return sample_s_ / step_s_; }
   /// One sample with constant torques. A state that is not finite: an axis beyond all numbers.
   void advance(AxisTorques torques);
   const AxisState& state() const { return x_; }

@@ -11,6 +11,8 @@
 namespace bodeflow::drive {
 namespace {
 
+constexpr double kMostSteps = 2000.0;  // of the integrator in a sample
+
 constexpr double kMost = 1e6;
 
 /// Parameters of the block that a record of properties may replace.
@@ -115,9 +117,16 @@ void AxisBlock::resolve(Facts& f) {
 
 void AxisBlock::activate(const Activation&) { reset(); }
 
+void AxisBlock::make_axis() {
+  axis_ = std::make_unique<Axis>(setup_.parameters, setup_.physics, sample_s_);
+  if (!(axis_->steps_per_sample() <= kMostSteps))
+    fail("the axis is too fast for its sample rate: it needs " + std::to_string(axis_->steps_per_sample()) +
+         " steps a sample, allowed: up to 2000; stiffness, damping and viscosities over the inertias set its rates");
+}
+
 void AxisBlock::reset() {
   setup_ = given_;
-  axis_ = std::make_unique<Axis>(setup_.parameters, setup_.physics, sample_s_);
+  make_axis();
   samples_ = 0;
 }
 
@@ -127,7 +136,7 @@ void AxisBlock::receive(int, const RecordView& record, Io& io) {
     take_property(record, n.name, n.least, n.most, *n.value);
   if (!(setup_.parameters.motor_inertia > 0 && setup_.parameters.load_inertia > 0 && setup_.parameters.stiffness > 0))
     fail("bench_properties: motor_inertia, load_inertia and stiffness, allowed: above 0");
-  axis_ = std::make_unique<Axis>(setup_.parameters, setup_.physics, sample_s_);
+  make_axis();
 }
 
 void AxisBlock::process(Io& io) {

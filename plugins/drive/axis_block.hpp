@@ -34,6 +34,7 @@ class AxisBlock final : public Block {
     AxisPhysics physics;
     double flutter = 0.0;
   };
+  void make_axis();
   void advance(Io& io, std::size_t n);
 
   Setup given_, setup_;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "records/signals.hpp"
+#include "trace/remedy.hpp"
 
 namespace bodeflow::residual {
 namespace {
@@ -34,8 +34,7 @@ bool all_named(const Answer& a, const std::vector<HiddenTruth>& hidden) {
 std::string listed(const std::vector<HiddenTruth>& hidden) {
   std::string text;
   for (const HiddenTruth& h : hidden) {
-    text += (text.empty() ? "" : " and ") + h.name + " (" + records::short_number(h.size, 4) +
-            (h.unit == "1" || h.unit.empty() ? "" : " " + h.unit) + ")";
+    text += (text.empty() ? "" : " and ") + h.name + " (" + amount_text(h.size, h.unit) + ")";
   }
   return text.empty() ? "nothing" : text;
 }

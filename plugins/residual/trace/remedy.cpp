@@ -22,8 +22,13 @@ std::optional<double> remedy_value(const RemedyKind& kind, const std::vector<Nam
   return std::nullopt;
 }
 
+std::string amount_text(double value, const std::string& unit) {
+  if (unit == "s" && std::abs(value) < 1e-3) return records::short_number(1e6 * value, 4) + " us";
+  return records::short_number(value, 4) + (unit.empty() || unit == "1" ? "" : " " + unit);
+}
+
 std::string remedy_words(const RemedyKind& kind, double value, const std::string& unit) {
-  const std::string amount = records::short_number(value, 4) + " " + unit;
+  const std::string amount = amount_text(value, unit);
   const std::string effect = kind.effect;
   if (effect == "delay") return "commands sent " + amount + " earlier";
   if (effect == "dead_time") return "dead-time compensation of " + amount;

@@ -34,7 +34,10 @@ struct NamedEffect {
 std::optional<double> remedy_value(const RemedyKind& kind, const std::vector<NamedEffect>& named, double factor,
                                    const std::string& place);
 
-/// "dead-time compensation of 1.02e-06 s" ...: what is switched on, as a part of a sentence.
+/// "1.02 us", "0.0131 Nm": times below a millisecond in us.
+std::string amount_text(double value, const std::string& unit);
+
+/// "dead-time compensation of 1.02 us" ...: what is switched on, as a part of a sentence.
 std::string remedy_words(const RemedyKind& kind, double value, const std::string& unit);
 
 }  // namespace bodeflow::residual

@@ -39,10 +39,10 @@ TEST_CASE("reveal: of two hidden effects both have to be named, and no third") {
 
 TEST_CASE("reveal: says it in a sentence") {
   CHECK(comparison({"not_separable", {"delay"}, {"skin_effect"}, kAll}, {{"delay", 2e-4, "s"}}) ==
-        "Right: the bench hid delay (0.0002 s); the trace said that delay or skin_effect is missing.");
+        "Right: the bench hid delay (200 us); the trace said that delay or skin_effect is missing.");
   CHECK(comparison({"named", {"delay"}, {}, kAll}, {}) == "Wrong: the bench hid nothing; the trace said that delay is missing.");
   CHECK(comparison({"named", {"delay", "dead_time"}, {}, kAll}, {{"delay", 2e-4, "s"}, {"dead_time", 1e-6, "s"}}) ==
-        "Right: the bench hid delay (0.0002 s) and dead_time (1e-06 s); the trace said that delay and dead_time are missing.");
+        "Right: the bench hid delay (200 us) and dead_time (1 us); the trace said that delay and dead_time are missing.");
 }
 
 TEST_CASE("reveal: the true parameters of Table 1") {

@@ -21,6 +21,8 @@ constexpr std::size_t kCompared = 100;
 constexpr double kFinest = 2e-3, kNearer = 1e-6;
 // Half a step of the frequencies that are tried first.
 constexpr double kGridStep = 0.08;
+// Part of the coupling's damping that stays there where a start has it in a bearing.
+constexpr double kKept = 0.1;
 // Damping ratios of elastic couplings.
 constexpr double kRatios[] = {0.01, 0.06};
 
@@ -164,25 +166,34 @@ std::vector<std::vector<double>> TwoMass::starts(std::span<const MeasuredRespons
     fail("the output moves against the input at low frequencies: check the signs of the signals");
   const double lowest = a.omega.front(), highest = a.omega.back(), step = std::log(2.0 * highest / lowest) / (kTried - 1);
   const auto tried = [&](int i) { return lowest * std::exp(step * i); };
-  std::vector<std::vector<double>> found;
+  Shape best;
+  best.off = std::numeric_limits<double>::infinity();
   for (const double ratio : kRatios) {
-    Shape best;
-    best.off = std::numeric_limits<double>::infinity();
+    Shape nearest;
+    nearest.off = best.off;
     for (int r = 1; r < kTried; ++r) {
       for (int z = load_ ? r - 1 : 0; z < r; ++z) {
         const Shape shape = compared(a, {load_ ? 0.0 : tried(z), tried(r), ratio, 0.05 * lowest});
-        if (shape.off < best.off) best = shape;
+        if (shape.off < nearest.off) nearest = shape;
       }
     }
-    best = refined(a, best);
-    const double gain = std::exp(best.log_gain), over = best.resonance * best.resonance / gain;
-    if (!load_) {
-      found.push_back(values(best.anti, best.resonance, over / (best.anti * best.anti), best.ratio, best.corner));
-      continue;
-    }
+    if (nearest.resonance > 0.0) best = refined(a, nearest);
+  }
+  if (!(best.resonance > 0.0)) fail("the response has no finite size at some of its lines");
+  const double over = best.resonance * best.resonance / std::exp(best.log_gain);
+  std::vector<std::vector<double>> found;
+  if (load_) {
     for (const double share : {0.5, 0.2, 0.8})  // of the motor in the inertia
       found.push_back(values(best.resonance * std::sqrt(share), best.resonance, over, best.ratio, best.corner));
+    return found;
   }
+  // A resonance tells how much is damped, hardly where: in the coupling, at the load, at the motor.
+  const std::vector<double> v = values(best.anti, best.resonance, over / (best.anti * best.anti), best.ratio, best.corner);
+  const double motor = v[0], load = v[1], moved = (1.0 - kKept) * v[3] * (motor + load) * (motor + load) / (motor * load);
+  found = {v, v, v};
+  found[1][3] = found[2][3] = kKept * v[3];
+  found[1][5] += moved * load / motor;
+  found[2][4] += moved * motor / load;
   return found;
 }
 

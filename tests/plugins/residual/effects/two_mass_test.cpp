@@ -81,7 +81,7 @@ TEST_CASE("two-mass model: from the load alone, the start has its resonance and 
   const auto base = declared_base<TwoMass>({{"output", std::string("load_angle")}});
   const MeasuredResponse m = measured([&](Complex s) { return angles(kDrive, s)[1]; });
   const auto starts = base->starts({&m, 1});
-  REQUIRE(starts.size() == 6);
+  REQUIRE(starts.size() == 3);
   for (const auto& v : starts) {
     CHECK(v[0] + v[1] == Approx(kDrive[0] + kDrive[1]).epsilon(0.2));
     CHECK(v[2] * (1.0 / v[0] + 1.0 / v[1]) == Approx(kDrive[2] * (1.0 / kDrive[0] + 1.0 / kDrive[1])).epsilon(0.2));
@@ -104,7 +104,7 @@ TEST_CASE("two-mass model: starts are near the plant, also behind a delay") {
   for (const double delay : {0.0, 5e-4}) {
     const MeasuredResponse m = measured([&](Complex s) { return angles(kDrive, s)[0] * std::exp(-s * delay); });
     const auto starts = base.starts({&m, 1});
-    REQUIRE(starts.size() == 2);
+    REQUIRE(starts.size() == 3);
     for (const int i : {0, 1, 2}) CHECK(starts[0][static_cast<std::size_t>(i)] == Approx(kDrive[i]).epsilon(0.2));
   }
 }

@@ -36,6 +36,7 @@ class ResponseMeasurement final : public Measurement {
     facts_.output_name = data_.output_names.front();
     facts_.input_unit = "1";
     facts_.output_unit = data_.response_units.empty() ? "" : data_.response_units.front();
+    if (data_.variance.size() == 0) facts_.error_unit = "%";
     facts_.samples = lines();
     if (!data_.input_amplitude.empty()) facts_.level = data_.input_amplitude.front();
     records::Checksum sum;
@@ -103,7 +104,7 @@ class ResponseMeasurement final : public Measurement {
     HeldOutError h;
     const auto points = static_cast<double>(lines() * inputs());
     if (!floor_known()) {
-      h.error = kRelative * std::sqrt(residual.squaredNorm() / points);
+      h.error = 100.0 * kRelative * std::sqrt(residual.squaredNorm() / points);  // in %
       return h;
     }
     double square = 0.0;

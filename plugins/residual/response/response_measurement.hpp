@@ -9,8 +9,8 @@
 
 namespace bodeflow::residual {
 
-/// A measured frequency response. Where it states a variance the floor is known; else errors count relative to the magnitude, and
-/// the floor is unknown.
+/// A measured frequency response. Where it states a variance the floor is known; else errors count relative to the magnitude (in
+/// %), and the floor is unknown.
 ///
 /// `known`: one value each of base.known(). Errors, by name: other inputs than the base has, several outputs, too few lines, a
 /// response of 0.

@@ -18,7 +18,7 @@ struct ClassTest {
   double p = 1.0;         ///< probability of so much, or more, from noise alone
 };
 
-/// The error of a model on a record beside what the noise alone would leave, in the unit of the output.
+/// The error of a model on a record beside what the noise alone would leave, in MeasurementFacts::unit_of_error.
 struct HeldOutError {
   double error = 0.0;                                        ///< root mean square of measured minus predicted
   double floor = std::numeric_limits<double>::quiet_NaN();   ///< expected from the noise alone; nan: unknown
@@ -47,12 +47,15 @@ struct Gain {
 struct MeasurementFacts {
   std::string name;  ///< "fit 1", "select" ...
   std::string input_name, output_name, input_unit, output_unit;
+  std::string error_unit;  ///< of HeldOutError; "": that of the output
   std::string checksum;
   double sample_rate_hz = 0.0;  ///< 0 for a measured response
   Eigen::Index samples = 0;
   Eigen::Index periods = 0;  ///< averaged; 0 where not periodic
   double level = 0.0;        ///< root mean square of the input
   std::vector<double> known;
+
+  const std::string& unit_of_error() const { return error_unit.empty() ? output_unit : error_unit; }
 };
 
 /// What a report draws of a residual: a spectrum, or a course in time.

@@ -196,7 +196,7 @@ void put_pictures(RecordBuilder& r, const Trace& t, const Measurement& test) {
 
 RecordBuilder write_trace(const Trace& t, const TraceData& data, const Declared& declared) {
   RecordBuilder r("trace");
-  put_verdict(r, t, data.test->facts().output_unit);
+  put_verdict(r, t, data.test->facts().unit_of_error());
   put_effects(r, t, data.fit.size());
   put_base(r, t, declared);
   put_classes(r, t);

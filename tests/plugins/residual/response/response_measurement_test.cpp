@@ -103,7 +103,8 @@ TEST_CASE("measured response: the model that made it leaves nothing, and the err
   CHECK(m->rows() == 80);
   // A tenth more of everything is an error of a tenth at each line.
   const HeldOutError error = m->error(m->residual(model, 1.1 * kWinding));
-  CHECK(error.error == Approx(0.1));
+  CHECK(error.error == Approx(10.0));  // %
+  CHECK(m->facts().unit_of_error() == "%");
   CHECK_FALSE(error.floor_known());
   CHECK(m->picture(m->residual(model, 1.1 * kWinding)).residual[7] == Approx(0.1 * std::abs(winding_response().response(7, 0))));
 }

@@ -21,6 +21,19 @@ std::string first_text(const RecordView& record, const char* name, const std::st
   return texts.empty() ? otherwise : texts.front();
 }
 
+/// Names and units of all inputs or outputs, or nothing where there is one.
+Signals several(const RecordView& record, const std::string& what) {
+  Signals signals{texts_in(record, (what + "_names").c_str()), texts_in(record, (what + "_units").c_str())};
+  if (signals.names.size() < 2) return {};
+  signals.units.resize(signals.names.size());
+  return signals;
+}
+
+/// As they are written: all of them, or the one.
+Signals all_of(const Signals& several, const std::string& name, const std::string& unit) {
+  return several.names.empty() ? Signals{{name}, {unit}} : several;
+}
+
 std::optional<Complex> logarithm(Complex z, double sample_time_s) {
   if (z == 0.0) return {};
   return std::log(z) / sample_time_s;
@@ -116,9 +129,8 @@ Expected<void> read_parameters(const RecordView& record, ModelData& m) {
   return {};
 }
 
-}  // namespace
-
-Expected<ModelData> read_model(const RecordView& record) {
+/// All but the system itself: how it was made, parameters, roots, names and figures.
+Expected<ModelData> read_head(const RecordView& record) {
   if (record.type() != "model") return unexpected("a record of type '" + std::string(record.type()) + "'; needed: model");
   ModelData m;
   m.method = record.text("method").value_or("");
@@ -129,13 +141,6 @@ Expected<ModelData> read_model(const RecordView& record) {
   if (!(m.sample_time_s >= 0.0) || !std::isfinite(m.sample_time_s) || !std::isfinite(m.delay_s))
     return unexpected("attributes 'sample_time' and 'delay' must be finite, the first not below 0");
   if (auto read = read_parameters(record, m); !read) return unexpected(read.error().text);
-  auto numerator = list_of<double>(record, "numerator"), denominator = list_of<double>(record, "denominator");
-  if (!numerator) return unexpected(numerator.error().text + "; a model of form '" + m.form + "' can't be read without it");
-  if (!denominator) return unexpected(denominator.error().text + "; a model of form '" + m.form + "' can't be read without it");
-  if (numerator->size() == 0 || denominator->size() == 0 || denominator->isZero(0.0))
-    return unexpected("numerator and denominator need coefficients, the denominator one that is not 0");
-  m.numerator = std::move(*numerator);
-  m.denominator = std::move(*denominator);
   auto poles = roots_in(record, "poles", m.sample_time_s > 0.0), zeros = roots_in(record, "zeros", m.sample_time_s > 0.0);
   if (!poles) return unexpected(poles.error().text);
   if (!zeros) return unexpected(zeros.error().text);
@@ -145,10 +150,72 @@ Expected<ModelData> read_model(const RecordView& record) {
   m.output_name = first_text(record, "output_names", m.output_name);
   m.input_unit = first_text(record, "input_units", "");
   m.output_unit = first_text(record, "output_units", "");
+  m.inputs = several(record, "input");
+  m.outputs = several(record, "output");
   m.conventions = texts_in(record, "conventions");
   m.warnings = texts_in(record, "warnings");
   read_numbers(record, m);
   return m;
+}
+
+Expected<void> read_transfer_function(const RecordView& record, ModelData& m) {
+  auto numerator = list_of<double>(record, "numerator"), denominator = list_of<double>(record, "denominator");
+  if (!numerator) return unexpected(numerator.error().text + "; a model of form '" + m.form + "' can't be read without it");
+  if (!denominator) return unexpected(denominator.error().text + "; a model of form '" + m.form + "' can't be read without it");
+  if (numerator->size() == 0 || denominator->size() == 0 || denominator->isZero(0.0))
+    return unexpected("numerator and denominator need coefficients, the denominator one that is not 0");
+  m.numerator = std::move(*numerator);
+  m.denominator = std::move(*denominator);
+  return {};
+}
+
+Expected<Eigen::MatrixXd> matrix_named(const RecordView& record, const char* name) {
+  const auto array = record.array(name);
+  if (!array) return unexpected("the record has array 'A' and no array '" + std::string(name) + "'");
+  if (array->shape.size() != 2)
+    return unexpected("array '" + std::string(name) + "' is " + shape_text(array->shape) + "; needed: a matrix");
+  auto m = matrix_of<double>(*array, static_cast<Eigen::Index>(array->shape[0]));
+  if (m && m->rows() == 0) m->resize(0, static_cast<Eigen::Index>(array->shape[1]));
+  return m;
+}
+
+Expected<void> read_state_space(const RecordView& record, ModelData& m) {
+  if (!record.array("A")) return {};
+  auto A = matrix_named(record, "A"), B = matrix_named(record, "B"), C = matrix_named(record, "C"), D = matrix_named(record, "D");
+  for (const auto* matrix : {&A, &B, &C, &D}) {
+    if (!*matrix) return unexpected(matrix->error().text);
+  }
+  auto system = numerics::make_state_space(*A, *B, *C, *D, m.sample_time_s);
+  if (!system) return unexpected(system.error().text);
+  m.state_space = std::move(*system);
+  return {};
+}
+
+}  // namespace
+
+Expected<ModelData> read_model(const RecordView& record) {
+  auto m = read_head(record);
+  if (!m) return m;
+  if (auto read = read_transfer_function(record, *m); !read) return unexpected(read.error().text);
+  if (auto read = read_state_space(record, *m); !read) return unexpected(read.error().text);
+  return m;
+}
+
+Expected<ModelData> read_linear_model(const RecordView& record) {
+  auto m = read_head(record);
+  if (!m) return m;
+  if (!record.array("A") || record.array("denominator")) {
+    if (auto read = read_transfer_function(record, *m); !read) return unexpected(read.error().text);
+  }
+  if (auto read = read_state_space(record, *m); !read) return unexpected(read.error().text);
+  return m;
+}
+
+Expected<numerics::StateSpace> state_space_of(const ModelData& m) {
+  if (m.state_space) return *m.state_space;
+  auto made = numerics::to_state_space(numerics::TransferFunction{m.numerator, m.denominator, m.sample_time_s});
+  if (!made) return unexpected(made.error().text);
+  return std::move(*made);
 }
 
 RecordBuilder write_model(const ModelData& m) {
@@ -160,10 +227,11 @@ RecordBuilder write_model(const ModelData& m) {
   r.set("delay", m.delay_s);
   r.set("parameter_names", m.parameter_names);
   r.set("parameter_units", m.parameter_units);
-  r.set("input_names", std::vector<std::string>{m.input_name});
-  r.set("output_names", std::vector<std::string>{m.output_name});
-  r.set("input_units", std::vector<std::string>{m.input_unit});
-  r.set("output_units", std::vector<std::string>{m.output_unit});
+  const Signals inputs = all_of(m.inputs, m.input_name, m.input_unit), outputs = all_of(m.outputs, m.output_name, m.output_unit);
+  r.set("input_names", inputs.names);
+  r.set("output_names", outputs.names);
+  r.set("input_units", inputs.units);
+  r.set("output_units", outputs.units);
   r.set("conventions", m.conventions);
   r.set("warnings", m.warnings);
   put_numbers(r, m);
@@ -172,9 +240,17 @@ RecordBuilder write_model(const ModelData& m) {
   if (m.denominator.size() > 0) {
     put_list<double>(r, "numerator", "", m.numerator);
     put_list<double>(r, "denominator", "", m.denominator);
-    put_roots(r, m, "pole", m.poles, m.pole_covariance);
-    put_roots(r, m, "zero", m.zeros, m.zero_covariance);
   }
+  if (m.state_space) {
+    put_matrix(r, "A", "", m.state_space->A);
+    put_matrix(r, "B", "", m.state_space->B);
+    put_matrix(r, "C", "", m.state_space->C);
+    put_matrix(r, "D", "", m.state_space->D);
+  }
+  if (m.denominator.size() == 0 && !m.state_space) return r;
+  put_roots(r, m, "pole", m.poles, m.pole_covariance);
+  // The zeros of several outputs are none of one list.
+  if (m.denominator.size() > 0 || m.zeros.size() > 0) put_roots(r, m, "zero", m.zeros, m.zero_covariance);
   return r;
 }
 

@@ -106,3 +106,52 @@ TEST_CASE("model record: what does not fit is refused by name") {
   const auto other = RecordBuilder("trace").bytes();
   CHECK(records::read_model(RecordView(other.data())).error().text == "a record of type 'trace'; needed: model");
 }
+
+TEST_CASE("model record: a state space of several inputs and outputs is read as it was written") {
+  ModelData m;
+  m.method = "test.model";
+  m.form = "state_space";
+  m.order = 2;
+  m.state_space = numerics::StateSpace{Eigen::Matrix2d{{-1.0, 2.0}, {-2.0, -1.0}}, Eigen::MatrixXd::Random(2, 3),
+                                       Eigen::MatrixXd::Random(2, 2), Eigen::MatrixXd::Random(2, 3), 0.0};
+  m.poles = Eigen::Vector2cd(std::complex<double>(-1.0, 2.0), std::complex<double>(-1.0, -2.0));
+  m.inputs = {{"u1", "u2", "u3"}, {"A", "A", "V"}};
+  m.outputs = {{"x", "phi"}, {"m", "rad"}};
+  const auto bytes = records::write_model(m).bytes();
+  const RecordView record(bytes.data());
+  const auto read = records::read_linear_model(record);
+  REQUIRE(read);
+  REQUIRE(read->state_space);
+  CHECK(read->state_space->A == m.state_space->A);
+  CHECK(read->state_space->B == m.state_space->B);
+  CHECK(read->state_space->C == m.state_space->C);
+  CHECK(read->state_space->D == m.state_space->D);
+  CHECK(read->poles == m.poles);
+  CHECK(read->inputs.names == m.inputs.names);
+  CHECK(read->outputs.units == m.outputs.units);
+  CHECK(read->input_name == "u1");
+  CHECK(records::read_model(record).error().text ==
+        "the record has no array 'numerator'; a model of form 'state_space' can't be read without it");
+  m.state_space->B.conservativeResize(1, 3);
+  const auto broken = records::write_model(m).bytes();
+  CHECK_FALSE(records::read_linear_model(RecordView(broken.data())));
+}
+
+TEST_CASE("model record: a gain without states is a state space too") {
+  ModelData m;
+  m.form = "state_space";
+  m.state_space = numerics::StateSpace{Eigen::MatrixXd(0, 0), Eigen::MatrixXd(0, 1), Eigen::MatrixXd(1, 0),
+                                       Eigen::MatrixXd::Constant(1, 1, 3.0), 0.0};
+  const auto bytes = records::write_model(m).bytes();
+  const auto read = records::read_linear_model(RecordView(bytes.data()));
+  REQUIRE(read);
+  CHECK(read->state_space->states() == 0);
+  CHECK(read->state_space->D(0, 0) == 3.0);
+}
+
+TEST_CASE("model record: numerator and denominator are realised where there is no state space") {
+  const auto read = carried(example(0.0));
+  const auto system = records::state_space_of(*read);
+  REQUIRE(system);
+  CHECK(system->states() == 2);
+}

@@ -1,6 +1,8 @@
 #include "bodeflow/numerics/discretise.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <string>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "bodeflow/numerics/balance.hpp"
@@ -9,6 +11,7 @@ namespace bodeflow::numerics {
 namespace {
 
 constexpr double kWhole = 1e-9;
+constexpr double kOnRealAxis = 1e-14;  // relative imaginary part that is rounding
 
 struct Transition {
   Eigen::MatrixXd phi;
@@ -78,6 +81,27 @@ Expected<DelayedModel> zero_order_hold(const StateSpace& system, double sample_t
   if (!result.model.A.allFinite() || !result.model.B.allFinite()) {
     return refused("the system grows beyond the range of a double within one sample");
   }
+  return result;
+}
+
+Expected<StateSpace> undo_zero_order_hold(const StateSpace& system) {
+  if (system.sample_time == 0.0) return refused("the system is already a continuous-time one");
+  StateSpace result = system;
+  result.sample_time = 0.0;
+  const Eigen::Index n = system.states(), inputs = system.inputs();
+  if (n == 0) return result;
+  for (const std::complex<double>& z : system.A.eigenvalues()) {
+    if (std::abs(z.imag()) <= kOnRealAxis * std::abs(z) && z.real() <= 0.0)
+      return refused("a pole at z = " + std::to_string(z.real()) + ": no continuous-time system of as many states has it");
+  }
+  Eigen::MatrixXd block = Eigen::MatrixXd::Identity(n + inputs, n + inputs);
+  block.topLeftCorner(n, n) = system.A;
+  block.topRightCorner(n, inputs) = system.B;
+  const Eigen::MatrixXd logarithm = block.log();
+  result.A = logarithm.topLeftCorner(n, n) / system.sample_time;
+  result.B = logarithm.topRightCorner(n, inputs) / system.sample_time;
+  if (!result.A.allFinite() || !result.B.allFinite())
+    return refused("the logarithm of the system is beyond the range of a double");
   return result;
 }
 

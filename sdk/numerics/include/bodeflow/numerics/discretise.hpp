@@ -36,4 +36,9 @@ struct DelayedModel {
 /// result beyond the range of a double.
 Expected<DelayedModel> zero_order_hold(const StateSpace& system, double sample_time, double delay_s = 0.0);
 
+/// The continuous-time system whose zero-order hold without delay is the given one: the principal logarithm of [A B; 0 I] over
+/// the sample time. Modes above half the sample rate come back below it. Errors: a system that is continuous, a pole at 0 or on
+/// the negative real axis, which no real system of as many states has.
+Expected<StateSpace> undo_zero_order_hold(const StateSpace& system);
+
 }  // namespace bodeflow::numerics

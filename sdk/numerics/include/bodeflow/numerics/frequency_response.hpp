@@ -19,4 +19,11 @@ Eigen::VectorXcd frequency_response(const ZeroPoleGain& system, const Eigen::Vec
 /// x I - A a line, cost O(lines * states^3).
 std::vector<Eigen::MatrixXcd> frequency_response(const StateSpace& system, const Eigen::VectorXd& frequency_hz);
 
+/// The same for many states and lines. Method: A is balanced and brought to Hessenberg form once, then each line is one
+/// Hessenberg solve (Laub, "Efficient multivariable frequency response computations", IEEE Trans. Autom. Control 26, 1981); no
+/// eigenvectors, whose condition would multiply the rounding error. Cost: O(states^3 + lines * states^2). The orthogonal
+/// transformation mixes states: where a response falls many decades below its largest value, `frequency_response` keeps more
+/// digits of it.
+std::vector<Eigen::MatrixXcd> hessenberg_response(const StateSpace& system, const Eigen::VectorXd& frequency_hz);
+
 }  // namespace bodeflow::numerics

@@ -56,6 +56,16 @@ Expected<StateSpace> to_state_space(const ZeroPoleGain& system);
 /// The poles, zeros and gain of a transfer function. Errors: those of `roots`.
 Expected<ZeroPoleGain> to_zero_pole_gain(const TransferFunction& system);
 
+/// Zeros, poles and gain of a system of one input and one output. Method: states that the output fixes are deflated by
+/// Householder reflections until the input reaches the output directly (Emami-Naeini & Van Dooren, "Computation of zeros of
+/// linear multivariable systems", Automatica 18, 1982); the zeros are then eigenvalues, the gain is the product of what was
+/// deflated. An entry below 1e-11 of what stands beside it counts as zero. Nothing is cancelled. Errors: more than one input or
+/// output, entries that are not finite.
+Expected<ZeroPoleGain> to_zero_pole_gain(const StateSpace& system);
+
+/// The same as polynomials: they lose digits with the order, which a state space keeps. Errors: as above.
+Expected<TransferFunction> to_transfer_function(const StateSpace& system);
+
 /// The polynomials of a system given by its roots; the denominator is monic. Errors: those of `split_roots`.
 Expected<TransferFunction> to_transfer_function(const ZeroPoleGain& system);
 

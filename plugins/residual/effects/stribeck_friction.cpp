@@ -36,7 +36,7 @@ std::vector<FitParameter> StribeckFriction::parameters(const Situation& s) const
 
 std::vector<std::vector<double>> StribeckFriction::starts(const Situation& s) const {
   const double effort = size_or_one(s.place.effort), flow = size_or_one(s.place.flow);
-  return {{0.03 * effort, 0.5, 0.1 * flow}, {0.2 * effort, 0.5, 0.1 * flow}};
+  return {{0.03 * effort, 0.5, 0.1 * flow}, {0.2 * effort, 0.5, 0.1 * flow}, {0.2 * effort, 0.5, 0.02 * flow}};
 }
 
 std::string StribeckFriction::sentence(std::span<const double> value, std::span<const double> std, const Situation& s) const {

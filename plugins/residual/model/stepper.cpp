@@ -16,6 +16,8 @@ constexpr int kBisections = 200;
 constexpr double kBend = 1e-3;
 // The flow over which a law may spread a jump: a part of what the jump changes itself, since the end of a step is implicit.
 constexpr double kSpread = 0.05;
+// Halvings beyond a fine step: parts are then shorter than it takes to pass what a jump is spread over.
+constexpr int kDeeper = 5;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -30,16 +32,11 @@ Stepper::Stepper(const StepPlan& plan, const StepGrid& grid)
       k_(static_cast<int>(plan.laws->count())) {
   const double h = grid.sample_time_s / grid.steps, fine_h = h / grid.fine;
   sample_step_ = std::min(static_cast<int>(grid.offset_s / h), grid.steps - 1);
-  const double within = grid.offset_s - sample_step_ * h;
-  sample_fine_ = std::min(static_cast<int>(within / fine_h), grid.fine - 1);
-  Transition t = transition(plan.plant->A, fine_h);
+  within_s_ = std::max(grid.offset_s - sample_step_ * h, 0.0);
+  sample_fine_ = std::min(static_cast<int>(within_s_ / fine_h), grid.fine - 1);
+  const Transition t = transition(plan.plant->A, fine_h);
   single_ = single_step(plan, t, -1.0);
-  single_sampled_ = single_step(plan, t, std::max(within - sample_fine_ * fine_h, 0.0));
-  if (grid.doubles) {
-    for (int i = 2; i < grid.fine; i *= 2) t = t.doubled();
-    double_ = double_step(plan, t, -1.0);
-    double_sampled_ = double_step(plan, t, std::max(within, 0.0));
-  }
+  single_sampled_ = single_step(plan, t, std::max(within_s_ - sample_fine_ * fine_h, 0.0));
   any_rough_ = laws_.any_rough();
   feeds_through_ = false;
   for (std::size_t i = 0; i < laws_.count(); ++i) {
@@ -83,15 +80,68 @@ bool Stepper::advance(int step, const double* u0, const double* u1, double time_
     resettle(time_s, u0);
     std::copy(u0, u0 + q_, u_.begin());
   }
-  if (grid_.doubles) {
-    load(u0, u1);
-    if (advance_double(sample ? double_sampled_ : double_, time_s, sample)) return sample;
-  }
-  advance_fine(u0, u1, time_s, sample);
+  if (grid_.doubles)
+    advance_part(0, 0, u0, u1, time_s, sample);
+  else
+    advance_fine(u0, u1, time_s, sample);
   return sample;
 }
 
+/// x, the inputs at both ends of that part of the step, w.
+void Stepper::load_part(const double* u0, const double* u1, int part, int parts) {
+  if (plan_.push != Push::straight || parts == 1) return load(u0, u1);
+  const double from = static_cast<double>(part) / parts, to = static_cast<double>(part + 1) / parts;
+  for (int j = 0; j < q_; ++j) {
+    ua_[at(j)] = u0[j] + from * (u1[j] - u0[j]);
+    ub_[at(j)] = u0[j] + to * (u1[j] - u0[j]);
+  }
+  load(ua_.data(), ub_.data());
+}
+
 // ---- double steps
+
+const Stepper::Level& Stepper::level(std::size_t halvings) {
+  while (levels_.size() <= halvings) {
+    const int parts = 1 << levels_.size();
+    const double h = grid_.sample_time_s / grid_.steps / parts;
+    Level l;
+    l.sample_part = std::min(static_cast<int>(within_s_ / h), parts - 1);
+    const double within = std::max(within_s_ - l.sample_part * h, 0.0);
+    if ((grid_.fine << kDeeper) > parts) {
+      const Transition half = transition(plan_.plant->A, 0.5 * h);
+      l.plain = double_step(plan_, half, -1.0);
+      l.sampled = double_step(plan_, half, within);
+    } else {
+      const Transition whole = transition(plan_.plant->A, h);
+      l.plain = single_step(plan_, whole, -1.0);
+      l.sampled = single_step(plan_, whole, within);
+    }
+    levels_.push_back(std::move(l));
+  }
+  return levels_[halvings];
+}
+
+/// Part `part` of a step halved so many times, in halves again where that does not do.
+void Stepper::advance_part(std::size_t halvings, int part, const double* u0, const double* u1, double time_s, bool sample) {
+  const Level& l = level(halvings);
+  const int parts = 1 << halvings;
+  const bool here = sample && part == l.sample_part;
+  const StepMaps& maps = here ? l.sampled : l.plain;
+  const double h = maps.h;
+  load_part(u0, u1, part, parts);
+  if (parts == grid_.fine << kDeeper) {
+    advance_single(maps, time_s, here);
+  } else if (advance_double(maps, time_s, here)) {
+    predicts_ = halvings == 0;
+    return;
+  } else if (!any_rough_) {
+    advance_fine(u0, u1, time_s, sample);
+  } else {
+    advance_part(halvings + 1, 2 * part, u0, u1, time_s, sample);
+    advance_part(halvings + 1, 2 * part + 1, u0, u1, time_s + 0.5 * h, sample);
+  }
+  predicts_ = false;
+}
 
 bool Stepper::advance_double(const StepMaps& maps, double time_s, bool sample) {
   const bool settled = k_ == 1   ? settle_double<1>(maps, time_s)
@@ -185,26 +235,21 @@ bool Stepper::bends() const {
 // ---- single steps
 
 void Stepper::advance_fine(const double* u0, const double* u1, double time_s, bool sample) {
-  const bool straight = plan_.push == Push::straight;
   for (int f = 0; f < grid_.fine; ++f) {
     const bool here = sample && f == sample_fine_;
-    const StepMaps& maps = here ? single_sampled_ : single_;
-    if (straight) {
-      const double from = static_cast<double>(f) / grid_.fine, to = static_cast<double>(f + 1) / grid_.fine;
-      for (int j = 0; j < q_; ++j) {
-        ua_[at(j)] = u0[j] + from * (u1[j] - u0[j]);
-        ub_[at(j)] = u0[j] + to * (u1[j] - u0[j]);
-      }
-    }
-    load(straight ? ua_.data() : u0, ub_.data());
-    const double begin_s = time_s + f * maps.h;
-    sound_ = settle_single(maps, begin_s) && sound_;
-    move_state(maps, 2 * k_, k_);
-    if (here) take_sample(maps, 1);
-    if (laws_.keeps_memory()) keep_memory(maps, begin_s);
-    for (int i = 0; i < k_; ++i) w_[at(i)] = w_[at(2 * k_ + i)] = w_[at(k_ + i)];
-    keep_scale();
+    load_part(u0, u1, f, grid_.fine);
+    advance_single(here ? single_sampled_ : single_, time_s + f * single_.h, here);
   }
+}
+
+void Stepper::advance_single(const StepMaps& maps, double time_s, bool sample) {
+  sound_ = settle_single(maps, time_s) && sound_;
+  move_state(maps, 2 * k_, k_);
+  if (sample) take_sample(maps, 1);
+  if (laws_.keeps_memory()) keep_memory(maps, time_s);
+  for (int i = 0; i < k_; ++i) w_[at(i)] = w_[at(2 * k_ + i)] = w_[at(k_ + i)];
+  keep_scale();
+  predicts_ = false;
 }
 
 bool Stepper::settle_single(const StepMaps& maps, double time_s) {

@@ -20,9 +20,10 @@ struct StepGrid {
 ///
 /// Within a double step reactions are parabolas through begin, middle and end, and the laws hold at middle and end: collocation
 /// at Lobatto's points for the laws (Hairer & Wanner, Solving Ordinary Differential Equations II, 2nd ed. 1996, section IV.5:
-/// Lobatto IIIA with 3 stages, order 4, A-stable), while the linear part is exact. Where a rough law bends within the step, or
-/// Newton's iteration does not settle, the step is done again as `fine` single ones; there the reaction of each place is found
-/// between bounds, so a jump is no obstacle.
+/// Lobatto IIIA with 3 stages, order 4, A-stable), while the linear part is exact. Where Newton's iteration does not settle, the
+/// step is done again as `fine` single ones, in which the reaction of each place is found between bounds. Where a rough law bends
+/// within the step, it is halved, and its halves again, down to 1/32 of a fine one: a jump moves what follows by as much as it
+/// is off in time, so the answer to states and parameters would be a staircase.
 class Stepper {
  public:
   Stepper(const StepPlan& plan, const StepGrid& grid);
@@ -38,7 +39,16 @@ class Stepper {
   const double* sampled() const { return sample_.data(); }
 
  private:
+  /// A step halved so many times.
+  struct Level {
+    StepMaps plain, sampled;
+    int sample_part = 0;  ///< of the 2^level parts, the one within which the sample is taken
+  };
+  const Level& level(std::size_t halvings);
+  void advance_part(std::size_t halvings, int part, const double* u0, const double* u1, double time_s, bool sample);
   bool advance_double(const StepMaps& maps, double time_s, bool sample);
+  void advance_single(const StepMaps& maps, double time_s, bool sample);
+  void load_part(const double* u0, const double* u1, int part, int parts);
   void advance_fine(const double* u0, const double* u1, double time_s, bool sample);
   void move_state(const StepMaps& maps, int signals, int unknown);
   Signals single_signals(std::size_t i, const StepMaps& maps, double time_s) const;
@@ -61,7 +71,9 @@ class Stepper {
   int n_, q_, k_;
   bool any_rough_ = false;
   bool feeds_through_ = false;  ///< inputs reach a place at once: reactions jump with them
-  StepMaps double_, double_sampled_, single_, single_sampled_;
+  double within_s_ = 0.0;       ///< of the step in which the sample is taken
+  std::vector<Level> levels_;
+  StepMaps single_, single_sampled_;
   int sample_step_ = 0, sample_fine_ = 0;
   std::vector<double> gain_;                              ///< of each place in a single step
   std::vector<double> x_, v_, out_, w_, guess_, sample_;  ///< w_: at the begin, middle, end

@@ -18,12 +18,12 @@ constexpr double kCoarse = 3e-2, kFinest = 1e-5, kFiner = 0.1, kLittle = 0.9;
 class Search {
  public:
   Search(const Prediction& prediction, const Stretch& stretch, const Eigen::VectorXd& measured)
-      : prediction_(prediction), stretch_(stretch), measured_(measured), uncertain_(prediction.uncertain(stretch)) {}
+      : prediction_(prediction), stretch_(stretch), measured_(measured), weight_(prediction.certainty(stretch)) {}
 
   /// From that state, or (empty) from the answer of the base model to it.
   Expected<Eigen::VectorXd> run(const Eigen::VectorXd& start, int steps) {
     slopes_ = prediction_.free_response(stretch_.count);
-    slopes_.topRows(uncertain_).setZero();
+    slopes_ = weight_.asDiagonal() * slopes_;
     unit_ = slopes_.colwise().norm().transpose();
     // One unit of a state moves the output by its own size, as far as the linear part tells.
     const double size = std::max(measured_.norm(), 1e-300), usual = size / std::sqrt(static_cast<double>(stretch_.count));
@@ -33,7 +33,8 @@ class Search {
     if (!error) return tl::unexpected(error.error());
     error_ = std::move(*error);
     for (int step = 0; step < steps; ++step) {
-      if ((step > 0 || start.size() > 0) && !differentiate()) break;
+      const bool known = step == 0 && start.size() == 0 && !prediction_.filters_state();
+      if (!known && !differentiate()) break;
       const double before = error_.squaredNorm();
       if (auto tried = take_step(); !tried) return tl::unexpected(tried.error());
       if (prediction_.linear()) break;
@@ -48,9 +49,7 @@ class Search {
   Expected<Eigen::VectorXd> error_at(const Eigen::VectorXd& state) const {
     auto predicted = prediction_.run(stretch_, state);
     if (!predicted) return tl::unexpected(predicted.error());
-    Eigen::VectorXd error = measured_ - predicted->output;
-    error.head(uncertain_).setZero();
-    return error;
+    return Eigen::VectorXd(weight_.cwiseProduct(measured_ - predicted->output));
   }
 
   bool differentiate() {
@@ -84,8 +83,7 @@ class Search {
 
   const Prediction& prediction_;
   const Stretch stretch_;
-  const Eigen::VectorXd measured_;
-  const Eigen::Index uncertain_;
+  const Eigen::VectorXd measured_, weight_;
   Eigen::MatrixXd slopes_;
   Eigen::VectorXd unit_, state_, error_;
   double difference_ = kCoarse;  ///< of the differences that stand for derivatives, in units

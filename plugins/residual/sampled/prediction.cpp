@@ -63,10 +63,16 @@ void Prediction::add_parallel() {
   });
 }
 
-Eigen::Index Prediction::uncertain(const Stretch& stretch) const {
-  if (by_spectrum_ || model_->has(Acts::series)) return stretch.count / 2;
-  const Eigen::Index before = sample_delay(model_->delay_s(*values_), record_->sample_time_s()).late - stretch.first;
-  return std::clamp<Eigen::Index>(before, 0, stretch.count / 2);
+Eigen::VectorXd Prediction::certainty(const Stretch& stretch) const {
+  Eigen::VectorXd c = Eigen::VectorXd::Ones(stretch.count);
+  const Eigen::Index half = stretch.count / 2;
+  if (by_spectrum_ || model_->has(Acts::series)) {
+    c.head(half).setZero();
+    return c;
+  }
+  const double delay = model_->delay_s(*values_) / record_->sample_time_s();
+  for (Eigen::Index n = 0; n < half; ++n) c[n] = std::clamp(static_cast<double>(stretch.first + n) - delay, 0.0, 1.0);
+  return c;
 }
 
 Simulated Prediction::without_states(const Stretch& stretch) const {

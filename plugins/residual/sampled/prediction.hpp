@@ -24,9 +24,12 @@ class Prediction {
   Eigen::Index states() const { return states_; }
   /// The output follows the state in a straight line.
   bool linear() const { return !model_->base->has_laws() && !model_->has(Acts::law) && !model_->has(Acts::output); }
-  /// How many samples at the begin of a stretch are uncertain whatever the state: those that a delayed input before the record
-  /// moves, and the first half where effects in series keep something from before the stretch.
-  Eigen::Index uncertain(const Stretch& stretch) const;
+  /// Effects in series stand between state and output, which `free_response` leaves out.
+  bool filters_state() const { return !by_spectrum_ && model_->has(Acts::series); }
+  /// How far each sample of a stretch can tell about the state, 0 to 1: not at all those that an input before the record moves (a
+  /// delay), in full those that are a sample time after it, in proportion between, so that nothing jumps where a delay passes
+  /// whole samples; not the first half where effects in series keep something from before the stretch.
+  Eigen::VectorXd certainty(const Stretch& stretch) const;
   /// The output (and flows and stored quantities) at the samples of a stretch from that state at its first one.
   Expected<Simulated> run(const Stretch& stretch, const Eigen::VectorXd& state) const;
   /// samples x states: the answer of the base model to each state alone.

@@ -154,6 +154,53 @@ TEST_CASE("sampled: a band-limited input drives a linear and a nonlinear plant a
   CHECK(m->error(m->residual({base, {}}, kPlant)).error < 2e-3 * rms(y));
 }
 
+TEST_CASE("sampled: the residual goes on smoothly where a delay passes whole samples, and finds it") {
+  const Eigen::VectorXd force = 5.0 * coloured_noise(3, 2000, 0.6);
+  // Two samples later.
+  const Eigen::VectorXd y = oscillator(force, 0.0).head(1998), u = force.tail(1998);
+  const auto base = held_plant();
+  const auto m = measured(*base, u, y);
+  const JointModel model{base, {addition<Delay>(*base)}};
+  const double t = 1.0 / kRate;
+  CHECK(m->error(m->residual(model, with(kPlant, 2.0 * t))).error < 1e-6 * rms(y));
+  for (const double d : {0.0, t, 2.0 * t}) {
+    const Eigen::VectorXd below = m->residual(model, with(kPlant, d - 1e-8)), above = m->residual(model, with(kPlant, d + 1e-8));
+    CHECK((above - below).norm() < 1e-3);
+  }
+  const Fit f = fitted(model, {m}, with(kPlant, 1.6 * t));
+  CHECK(f.values()[3] == Approx(2.0 * t).epsilon(1e-4));
+}
+
+TEST_CASE("sampled: a lag in series and a tone on top are taken into account") {
+  const Eigen::Index n = 3000;
+  const Eigen::VectorXd u = 5.0 * coloured_noise(4, n, 0.6), y = oscillator(u, 0.0);
+  const double t = 1.0 / kRate, lag = 0.02;
+  // dz/dt = (y - z) / lag with the true y between the samples: Runge-Kutta on the joint system.
+  const auto f = [lag](const Eigen::VectorXd& x, double force) {
+    return Eigen::VectorXd(Eigen::Vector3d(x[1], (force - kPlant[1] * x[1] - kPlant[2] * x[0]) / kPlant[0], (x[0] - x[2]) / lag));
+  };
+  Eigen::VectorXd z = integrated(f, Eigen::Vector3d(0.01, -0.5, 0.01), u, t, 20).col(2);
+  const auto base = held_plant();
+  const auto m = measured(*base, u, z);
+  const JointModel model{base, {addition<SensorLag>(*base)}};
+  CHECK(m->error(m->residual(model, with(kPlant, lag))).error < 5e-3 * rms(z));
+  CHECK(m->error(m->residual({base, {}}, kPlant)).error > 0.1 * rms(z));
+
+  Eigen::VectorXd hummed = y;
+  for (Eigen::Index k = 0; k < n; ++k) hummed[k] += 0.01 * std::sin(kTwoPi * 31.7 * t * static_cast<double>(k) + 1.0);
+  const auto h = measured(*base, u, hummed);
+  Situation s;
+  s.peaks_hz = {31.7};
+  s.sample_time_s = t;
+  const JointModel tone{base, {addition<Interharmonic>(*base, s)}};
+  CHECK(h->error(h->residual(tone, with(kPlant, 31.7))).error < 5e-3 * 0.01);
+  CHECK(h->eliminated(tone, with(kPlant, 31.7)) == 4);
+  Situation told;
+  h->say({base, {}}, kPlant, 0, told);
+  REQUIRE_FALSE(told.peaks_hz.empty());
+  CHECK(told.peaks_hz[0] == Approx(31.7).margin(0.02));
+}
+
 TEST_CASE("sampled: what is said of a record: sizes, coefficients, what is missing") {
   const Eigen::VectorXd u = 5.0 * coloured_noise(5, 6000, 0.6), y = oscillator(u, 0.0);
   const auto base = held_plant();
@@ -176,6 +223,44 @@ TEST_CASE("sampled: what is said of a record: sizes, coefficients, what is missi
     const std::complex<double> expected = -s.response[i] * s.response[i] * 0.05 * kPlant[2];
     CHECK(std::abs(s.missing[i] - expected) < 0.4 * std::abs(expected));
   }
+}
+
+TEST_CASE("sampled: an axis that integrates is cut into segments and its friction found in a closed loop") {
+  // 2 kg, 4 N s/m and 1.5 N of dry friction under a position controller; small steps resolve where it sticks.
+  const double rate = 500.0, mass = 2.0, viscous = 4.0, coulomb = 1.5;
+  const Eigen::Index n = 3000;
+  numerics::Random random(8);
+  Eigen::VectorXd u(n), y(n);
+  double x = 0.0, v = 0.0;
+  const int fine = 100;
+  const double h = 1.0 / (rate * fine);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    y[k] = x + 2e-6 * random.normal();
+    const double time = static_cast<double>(k) / rate,
+                 reference = 0.05 * std::sin(3.0 * time) + 0.02 * std::sin(8.1 * time + 1.0);
+    u[k] = 400.0 * (reference - y[k]) - 20.0 * v;
+    for (int i = 0; i < fine; ++i) {
+      const double free = v + h * (u[k] - viscous * v) / mass, grip = h * coulomb / mass;
+      v = std::abs(free) <= grip ? 0.0 : free - std::copysign(grip, free);
+      x += h * v;
+    }
+  }
+  const auto base = declared_base<DriveAxis>();
+  const auto m = measured(*base, u, y, rate);
+  CHECK(m->observations().at(0).rfind("the plant integrates: ", 0) == 0);
+  CHECK(m->rows() == n);
+  const Eigen::Vector2d start(mass, viscous);
+  const Fit linear = fitted({base, {}}, {m}, start);
+  Situation s;
+  s.place.effort = 10.0;
+  const JointModel more{base, {addition<CoulombFriction>(*base, s)}};
+  const Fit f = fitted(more, {m}, with(linear.values(), 0.8));
+  CHECK(f.values()[0] == Approx(mass).epsilon(0.01));
+  CHECK(f.values()[1] == Approx(viscous).epsilon(0.03));
+  CHECK(f.values()[2] == Approx(coulomb).epsilon(0.02));
+  CHECK(m->error(f.residual).error < 0.1 * m->error(linear.residual).error);
+  const Gain gain = m->gain(linear.residual, f.residual);
+  CHECK(gain.block_z > 4.0);
 }
 
 TEST_CASE("sampled: an inverse model is exact on smooth data, and its friction passes the filter as the force does") {

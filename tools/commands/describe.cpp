@@ -128,9 +128,9 @@ void print_base_model(const BlockDescription& model, const PluginDescription& pl
 std::string acts_text(const EffectDescription& effect) {
   switch (effect.acts) {
     case Acts::law:
-      return fmt::format("a law at a {}", fmt::join(effect.kinds, ", "));
+      return fmt::format("a law at places of kind {}", fmt::join(effect.kinds, ", "));
     case Acts::immittance:
-      return fmt::format("an impedance at a {}", fmt::join(effect.kinds, ", "));
+      return fmt::format("an impedance at places of kind {}", fmt::join(effect.kinds, ", "));
     case Acts::input:
       return "on the samples of the input";
     case Acts::output:

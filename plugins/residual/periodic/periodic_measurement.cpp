@@ -7,6 +7,7 @@
 
 #include "periodic/bin_classes.hpp"
 #include "periodic/bins_left.hpp"
+#include "periodic/open_loop.hpp"
 #include "periodic/periodic_prediction.hpp"
 #include "periodic/tones.hpp"
 #include "sampled/observations.hpp"
@@ -58,6 +59,11 @@ class PeriodicMeasurement final : public Measurement {
 
   Eigen::Index eliminated(const JointModel& model, const Eigen::VectorXd& values) const override {
     return model.has(Acts::tone) ? Tones(r_, model, values).fitted() : 0;
+  }
+
+  std::unique_ptr<const OpenLoop> open_loop(const JointModel& model, const Eigen::VectorXd& values,
+                                            const Eigen::VectorXd& residual, const Addition& effect) const override {
+    return periodic_open_loop(r_, model, values, residual, effect);
   }
 
   std::vector<ClassTest> tests(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,

@@ -92,6 +92,14 @@ double promised_cost(const Approach& a) {
   return step.allFinite() ? (a.residual + a.jacobian * step).squaredNorm() : a.cost;
 }
 
+void step_once(const FitProblem& problem, Approach& a) {
+  const Eigen::VectorXd step = bounded_step(problem, a, kLeastDamping);
+  a.at += step;
+  a.residual = problem.residual(a.at);
+  a.cost = a.residual.squaredNorm();
+  a.started = step.allFinite() && a.residual.allFinite();
+}
+
 void approach(const FitProblem& problem, int steps, double least_fall, bool thorough, Approach& a) {
   if (!a.started) return;
   const double start = a.cost;

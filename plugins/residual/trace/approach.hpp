@@ -20,6 +20,9 @@ Approach approach_from(const FitProblem& problem, const Eigen::VectorXd& start, 
 /// The cost that a Gauss-Newton step from there would reach if the problem were linear.
 double promised_cost(const Approach& a);
 
+/// Moves by one Gauss-Newton step within the bounds; `started` is whether the model can be computed there.
+void step_once(const FitProblem& problem, Approach& a);
+
 /// Goes on for at most that many steps, or until one lowers the cost by less than `least_fall`, or by less than a part in 200 of
 /// what all have. Where `thorough`, all columns are then formed afresh once and it goes on.
 ///

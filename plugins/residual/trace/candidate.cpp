@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "records/signals.hpp"
 
@@ -13,6 +14,8 @@ using records::short_number;
 constexpr std::size_t kSearches = 2;
 // The linear look promises so much more than was found.
 constexpr double kMoreThere = 1.05;
+// A simulation that does so much of what the look promised confirms it.
+constexpr double kKept = 0.8;
 constexpr int kFirstSteps = 3, kMoreSteps = 10;
 // What chance does more often than that is not looked at more closely near the noise.
 constexpr double kWorthASearch = 0.05;
@@ -67,13 +70,74 @@ Approach search(const Against& against, FitProblem& problem, const std::vector<E
   return best;
 }
 
-/// Sets out again from where the linear look finds more than the search has.
-void search_on(const Against& against, FitProblem& problem, const Null& null, Approach& best) {
-  if (null.starts.empty() || !(null.most > kMoreThere * (against.before.fit.chi2 - best.cost))) return;
-  std::vector<std::vector<double>> own;
-  for (const Eigen::VectorXd& start : null.starts) own.emplace_back(start.begin(), start.end());
-  Approach other = search(against, problem, points(against, problem, own));
-  if (other.started && other.cost < best.cost) best = std::move(other);
+/// An effect with all that its search needs.
+struct Attempt {
+  const Against& against;
+  FitProblem& problem;
+  std::optional<Looks> looks;
+  std::vector<Eigen::VectorXd> starts;  ///< values of the effect's parameters
+  Null null;
+  double promised = 0.0;  ///< the most that the looks found
+
+  std::vector<Eigen::VectorXd> points_at(const std::vector<Eigen::VectorXd>& own) const {
+    std::vector<std::vector<double>> values;
+    for (const Eigen::VectorXd& v : own) values.emplace_back(v.begin(), v.end());
+    return points(against, problem, values);
+  }
+  double gain(const Approach& a) const { return a.started ? against.before.fit.chi2 - a.cost : 0.0; }
+  void find_null(double found) {
+    null = null_distribution(problem, against.before.fit, starts, found, looks ? &*looks : nullptr);
+  }
+};
+
+/// The model with the effect where the linear look finds most, however little that is.
+Approach nearly_nothing(const Attempt& attempt) {
+  Approach a;
+  const Null& null = attempt.null;
+  a.at = extended(attempt.against.before.fit, attempt.problem.layout(), {null.nearest.begin(), null.nearest.end()});
+  a.residual = attempt.problem.residual(a.at);
+  a.cost = a.residual.squaredNorm();
+  a.jacobian = Eigen::MatrixXd::Zero(0, a.at.size());
+  a.started = a.residual.allFinite();
+  return a;
+}
+
+/// The best that the looks find from some values, simulated; one that matters and that the looks can't be trusted with is
+/// searched for by simulations too, where `thorough` from all these values.
+Approach search_by_looks(Attempt& attempt, const std::vector<Eigen::VectorXd>& starts, bool thorough) {
+  const Against& against = attempt.against;
+  std::vector<Eigen::VectorXd> from;
+  for (const Eigen::VectorXd& start : starts)
+    from.push_back(extended(against.before.fit, attempt.problem.layout(), {start.begin(), start.end()}));
+  LookedUp up = look_up(attempt.problem, *attempt.looks, against.before.fit, from);
+  attempt.promised = std::max(attempt.promised, up.promised);
+  if (!attempt.null.looked) attempt.find_null(up.promised);
+  const bool matters = attempt.null.p(std::max(up.promised, attempt.gain(up.approach))) < kWorthASearch;
+  const auto kept = [&](const Approach& a) { return a.started && attempt.gain(a) >= kKept * up.promised; };
+  const EffectDescription& what = attempt.problem.model().additions.back().what;
+  const bool smooth = !what.rough && what.memory == 0;
+  if (!matters && !up.approach.started && attempt.null.looked) up.approach = nearly_nothing(attempt);
+  if (up.approach.started && (!matters || (smooth && kept(up.approach)))) return std::move(up.approach);
+  Approach best;
+  if (up.approach.started) best = search(against, attempt.problem, {up.approach.at});
+  if (kept(best) || !thorough) return best;
+  Approach other = search(against, attempt.problem, attempt.points_at(starts));
+  return other.started && (!best.started || other.cost < best.cost) ? other : best;
+}
+
+/// The best of searches from the starts of the effect, and from where the linear look finds more than these do.
+Approach search_all(Attempt& attempt) {
+  const auto from = [&](const std::vector<Eigen::VectorXd>& starts, bool thorough) {
+    return attempt.looks ? search_by_looks(attempt, starts, thorough)
+                         : search(attempt.against, attempt.problem, attempt.points_at(starts));
+  };
+  Approach best = from(attempt.starts, true);
+  if (!best.started) return best;
+  if (!attempt.null.looked) attempt.find_null(attempt.gain(best));
+  if (attempt.null.starts.empty() || !(attempt.null.most > kMoreThere * std::max(attempt.promised, attempt.gain(best))))
+    return best;
+  Approach other = from(attempt.null.starts, false);
+  return other.started && other.cost < best.cost ? other : best;
 }
 
 std::string unphysical(const Candidate& c) {
@@ -138,18 +202,12 @@ void measure(const Against& against, Fit f, Candidate& c) {
 }
 
 /// The candidate where the linear look finds most, if that is no more than chance finds; false else.
-bool look_only(const Against& against, const FitProblem& problem, Candidate& c) {
+bool look_only(const Attempt& attempt, Candidate& c) {
   const double p = c.null.p_of_look();
   if (p < kWorthASearch) return false;
-  const Fit& from = against.before.fit;
-  Approach a;
-  const std::vector<double> own(c.null.nearest.begin(), c.null.nearest.end());
-  a.at = extended(from, problem.layout(), own);
-  a.residual = problem.residual(a.at);
-  if (!a.residual.allFinite()) return false;
-  a.cost = a.residual.squaredNorm();
-  a.jacobian = Eigen::MatrixXd::Zero(0, a.at.size());
-  measure(against, fit_at(problem, a), c);
+  const Approach a = nearly_nothing(attempt);
+  if (!a.started) return false;
+  measure(attempt.against, fit_at(attempt.problem, a), c);
   if (!c.tried) return false;
   c.fit_gain = c.null.most;
   c.p = p;
@@ -200,28 +258,28 @@ Candidate try_effect(const Addition& addition, const Against& against) {
   const Eigen::Index settled = static_cast<Eigen::Index>(model.parameters().size());
   model.additions.push_back(addition);
   FitProblem problem(model, against.bench.fit, settled);
-  const std::vector<std::vector<double>> own = addition.effect->starts(addition.situation);
-  std::vector<Eigen::VectorXd> starts;
-  for (const auto& values : own)
-    starts.push_back(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  Attempt attempt{against, problem, Looks::make(problem, against.before.fit), {}, {}, 0.0};
+  for (const auto& values : addition.effect->starts(addition.situation))
+    attempt.starts.push_back(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   if (against.near_noise) {
-    c.null = null_distribution(problem, against.before.fit, starts, 0.0);
-    if (c.null.looked && look_only(against, problem, c)) return c;
+    attempt.find_null(0.0);
+    c.null = attempt.null;
+    if (c.null.looked && look_only(attempt, c)) return c;
   }
-  Approach best = search(against, problem, points(against, problem, own));
+  const Approach best = search_all(attempt);
   if (!best.started) {
     c.reason = "could not be fitted: the model with it can't be computed at any start";
     return c;
   }
-  if (!c.null.looked) c.null = null_distribution(problem, against.before.fit, starts, against.before.fit.chi2 - best.cost);
-  search_on(against, problem, c.null, best);
+  c.null = std::move(attempt.null);
+  c.approached = attempt.looks && attempt.gain(best) >= kKept * attempt.promised;
   measure(against, fit_at(problem, best), c);
   c.with.fit.jacobian.resize(0, 0);  // as many as there are candidates: it is formed again where it is needed
   return c;
 }
 
 void go_on(const Against& against, Candidate& c) {
-  if (!c.tried || c.with.fit.polished) return;
+  if (!c.tried || c.approached || c.with.fit.polished) return;
   const JointModel model = c.with.fit.model;
   const auto own = static_cast<Eigen::Index>(c.addition.parameters.size());
   FitProblem problem(model, against.bench.fit, static_cast<Eigen::Index>(model.parameters().size()) - own);

@@ -41,8 +41,9 @@ void test_classes(const Bench& bench, Examined& x);
 struct Candidate {
   Addition addition;
   std::string label;
-  bool tried = false;  ///< it could be fitted
-  Examined with;       ///< the model with it
+  bool tried = false;       ///< it could be fitted
+  bool approached = false;  ///< the search ended where nothing more was promised
+  Examined with;            ///< the model with it
   Null null;
   double fit_gain = 0.0;  ///< fall of minus twice the log likelihood on the fitted records
   double p = 1.0;         ///< of that gain without the effect; above 1/2 where its sign is the wrong one

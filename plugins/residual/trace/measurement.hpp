@@ -66,6 +66,16 @@ struct ResidualPicture {
   std::vector<std::int64_t> kind;             ///< a line each (Kind), empty for a course
 };
 
+/// What an effect changes in the residual of a record where it acts on the motion that was measured and does not change that
+/// motion: a first look at laws that spares the simulation, exact for small effects and near it for greater ones.
+class OpenLoop {
+ public:
+  virtual ~OpenLoop() = default;
+  /// Rows of the residual, for the effect that `model` has beside those that the look was made for; the values of the others do
+  /// not matter. Not finite outside of the domain.
+  virtual Eigen::VectorXd change(const JointModel& model, const Eigen::VectorXd& values) const = 0;
+};
+
 /// One record of measurements, ready to be compared with models. Its length is fixed: residuals of different models can be
 /// subtracted row by row.
 class Measurement {
@@ -84,6 +94,13 @@ class Measurement {
   virtual double difference_step(const JointModel& /*model*/) const { return 1e-5; }
   /// Parameters of its own that residual eliminates for that model.
   virtual Eigen::Index eliminated(const JointModel& model, const Eigen::VectorXd& values) const = 0;
+
+  /// The look at an effect beside that model, which leaves `residual` at those values; nullptr where the residual itself is as
+  /// quick, or no such look is known. It refers to this measurement.
+  virtual std::unique_ptr<const OpenLoop> open_loop(const JointModel& /*model*/, const Eigen::VectorXd& /*values*/,
+                                                    const Eigen::VectorXd& /*residual*/, const Addition& /*effect*/) const {
+    return nullptr;
+  }
 
   /// Tests by class. `jacobian` of the residual by the fit's coordinates and their `covariance`; `fitted`: the record was fitted.
   virtual std::vector<ClassTest> tests(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,

@@ -23,7 +23,7 @@ constexpr std::size_t kKeptStarts = 2;
 // Such a p of a single trial is below any level however many trials there were.
 constexpr double kBeyondDoubt = 1e-12;
 // A direction of which less is left beside those of the model is one that the model has already.
-constexpr double kNothingNew = 1e-4;
+constexpr double kNothingNew = 1e-4, kNothingNewToLooks = 1e-2;
 // Neighbours on a fine grid share this part of their direction: the largest gain between them is then hardly above theirs.
 constexpr double kAlike = 0.8;
 constexpr std::size_t kMostPoints = 64;
@@ -34,7 +34,7 @@ constexpr double kPi = 3.14159265358979323846;
 /// The effect beside the settled fit, by its own parameters.
 class Beside {
  public:
-  Beside(const FitProblem& problem, const Fit& from) : problem_(problem), from_(from) {
+  Beside(const FitProblem& problem, const Fit& from, const Looks* looks) : problem_(problem), from_(from), looks_(looks) {
     at_.resize(problem.layout().size());
     Eigen::Index settled = 0;
     for (Eigen::Index i = 0; i < at_.size(); ++i) at_[i] = problem.is_settled(i) ? from.at[settled++] : 0.0;
@@ -51,12 +51,13 @@ class Beside {
       for (std::size_t r = 0; r < layout.records(); ++r)
         c[layout.index(p, r)] = parameter.logarithmic ? std::log(v) : v / parameter.scale;
     }
-    return problem_.residual(c) - from_.residual;
+    return looks_ != nullptr ? looks_->change(c) : Eigen::VectorXd(problem_.residual(c) - from_.residual);
   }
 
  private:
   const FitProblem& problem_;
   const Fit& from_;
+  const Looks* looks_;
   Eigen::VectorXd at_;
   std::size_t first_ = 0;
 };
@@ -142,9 +143,10 @@ struct Score {
 };
 
 /// The amplitudes of `point` that a linear fit gives; nothing where none has the right sign.
-std::optional<Eigen::VectorXd> fitted(const Eigen::MatrixXd& columns, const Fit& from, const std::vector<FitParameter>& own,
-                                      const std::vector<Eigen::Index>& amplitudes, Eigen::VectorXd point) {
-  const Eigen::VectorXd factor = columns.colPivHouseholderQr().solve(-from.residual);
+std::optional<Eigen::VectorXd> fitted(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
+                                      const std::vector<FitParameter>& own, const std::vector<Eigen::Index>& amplitudes,
+                                      Eigen::VectorXd point) {
+  const Eigen::VectorXd factor = columns.colPivHouseholderQr().solve(-residual);
   for (std::size_t a = 0; a < amplitudes.size(); ++a) {
     const FitParameter& p = own[static_cast<std::size_t>(amplitudes[a])];
     double& value = point[amplitudes[a]];
@@ -159,11 +161,20 @@ std::optional<Eigen::VectorXd> fitted(const Eigen::MatrixXd& columns, const Fit&
 
 class Scorer {
  public:
-  Scorer(const Beside& beside, const Fit& from, const std::vector<FitParameter>& own, const std::vector<Eigen::Index>& amplitudes)
-      : beside_(beside), from_(from), own_(own), amplitudes_(amplitudes) {
+  Scorer(const Beside& beside, const Fit& from, const std::vector<FitParameter>& own, const std::vector<Eigen::Index>& amplitudes,
+         double nothing_new, const Eigen::VectorXd& probe)
+      : beside_(beside), own_(own), amplitudes_(amplitudes), nothing_new_(nothing_new) {
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(from.jacobian);
-    q_ = qr.householderQ() * Eigen::MatrixXd::Identity(from.jacobian.rows(), from.jacobian.cols());
+    const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(from.jacobian.rows(), from.jacobian.cols());
+    const Eigen::VectorXd change = beside.change(probe);
+    for (Eigen::Index r = 0; r < q.rows(); ++r)
+      if (change[r] != 0.0 || !q.row(r).isZero(0.0)) rows_.push_back(r);
+    q_ = q(rows_, Eigen::all);
+    residual_ = from.residual(rows_);
   }
+
+  /// Of directions: those that the effect or the model can change at all. Between the lines of a period it may be none.
+  Eigen::Index rows() const { return q_.rows(); }
 
   Score at(const Eigen::VectorXd& point) const {
     const auto count = static_cast<Eigen::Index>(amplitudes_.size());
@@ -174,27 +185,29 @@ class Scorer {
       Eigen::VectorXd single = point;
       for (Eigen::Index b = 0; b < count; ++b)
         single[amplitudes_[static_cast<std::size_t>(b)]] *= a == b ? kSmall : kSmall * kNearZero;
-      Eigen::VectorXd d = beside_.change(single);
+      Eigen::VectorXd d = beside_.change(single)(rows_);
       const double whole = d.norm();
       if (!d.allFinite() || !(whole > 0.0)) return s;
       d -= q_ * (q_.transpose() * d);
       columns.col(a) = d;
       d -= unit.leftCols(a) * (unit.leftCols(a).transpose() * d);
-      if (!(d.norm() > kNothingNew * whole)) return s;
+      if (!(d.norm() > nothing_new_ * whole)) return s;
       unit.col(a) = d.normalized();
     }
-    s.gain = (unit.transpose() * from_.residual).squaredNorm();
-    s.start = fitted(columns, from_, own_, amplitudes_, point);
+    s.gain = (unit.transpose() * residual_).squaredNorm();
+    s.start = fitted(columns, residual_, own_, amplitudes_, point);
     s.unit = std::move(unit);
     return s;
   }
 
  private:
   const Beside& beside_;
-  const Fit& from_;
   const std::vector<FitParameter>& own_;
   const std::vector<Eigen::Index>& amplitudes_;
+  double nothing_new_;
+  std::vector<Eigen::Index> rows_;
   Eigen::MatrixXd q_;
+  Eigen::VectorXd residual_;
 };
 
 /// How much of the one's directions lies in the other's, 0 to 1.
@@ -315,12 +328,13 @@ double Null::p(double gain) const {
 
 double Null::p_of_look() const { return opposite > 0.0 ? 1.0 - p(opposite) : p(most); }
 
-Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& own_starts, double gain) {
+Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& own_starts, double gain,
+                       const Looks* looks) {
   const Addition& effect = problem.model().additions.back();
   if (effect.what.acts == Acts::tone) return of_tones(problem, from, own_starts.front());
   std::vector<Eigen::VectorXd> starts;
   for (const Eigen::VectorXd& start : own_starts) starts.push_back(sized(effect.parameters, start));
-  const Beside beside(problem, from);
+  const Beside beside(problem, from, looks);
   const std::vector<Eigen::Index> amplitudes = vanishing(beside, effect.parameters, starts.front());
   Null n;
   n.freedom = 0.0;
@@ -343,9 +357,10 @@ Null null_distribution(const FitProblem& problem, const Fit& from, const std::ve
     return n;
   }
   const auto per_point = static_cast<Eigen::Index>(amplitudes.size());
-  std::vector<Score> found = scores(Scorer(beside, from, effect.parameters, amplitudes), starts, ranges,
-                                    effect.what.linear() ? kAttempts : kSlowAttempts);
-  Eigen::MatrixXd unit(problem.rows(), per_point * static_cast<Eigen::Index>(found.size()));
+  const Scorer scorer(beside, from, effect.parameters, amplitudes, looks != nullptr ? kNothingNewToLooks : kNothingNew,
+                      starts.front());
+  std::vector<Score> found = scores(scorer, starts, ranges, effect.what.linear() || looks != nullptr ? kAttempts : kSlowAttempts);
+  Eigen::MatrixXd unit(scorer.rows(), per_point * static_cast<Eigen::Index>(found.size()));
   for (std::size_t g = 0; g < found.size(); ++g)
     unit.middleCols(per_point * static_cast<Eigen::Index>(g), per_point) = found[g].unit;
   if (found.empty()) return n;

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "trace/joint_fit.hpp"
+#include "trace/looks.hpp"
 
 namespace bodeflow::residual {
 
@@ -41,7 +41,9 @@ struct Null {
 /// Random Fields, 1981, section 4.1).
 ///
 /// `gain` is what was found: where that is beyond all doubt, or a floor is unknown (so that the gain is of a noise model, and no
-/// chi-squared to the digit), trials are counted and not simulated: as many as a fine grid has points, an upper bound.
-Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& starts, double gain);
+/// chi-squared to the digit), trials are counted and not simulated: as many as a fine grid has points, an upper bound. `looks`
+/// take the place of simulations where there are any.
+Null null_distribution(const FitProblem& problem, const Fit& from, const std::vector<Eigen::VectorXd>& starts, double gain,
+                       const Looks* looks = nullptr);
 
 }  // namespace bodeflow::residual

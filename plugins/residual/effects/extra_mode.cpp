@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "effects/response_words.hpp"
 
@@ -9,8 +10,8 @@ namespace bodeflow::residual {
 namespace {
 
 constexpr std::size_t kStarts = 3;
-// More damped, the magnitude has no peak: no resonance, but a shape that follows anything broad.
-constexpr double kMostDamping = 0.7;
+// Modes of structures are damped by a few per cent. More damped it is a shape that follows anything broad.
+constexpr double kMostDamping = 0.1;
 
 /// How far line k stands out of the noise of what is missing.
 double significance(const Situation& s, std::size_t k) {
@@ -39,7 +40,7 @@ double edge(const Situation& s, std::size_t peak, std::ptrdiff_t step, double le
 /// Half the relative width in which |missing| stays above its peak over sqrt(2).
 double half_width(const Situation& s, std::size_t peak) {
   const double least = std::abs(s.missing[peak]) / std::sqrt(2.0);
-  return std::clamp(0.5 * (edge(s, peak, 1, least) - edge(s, peak, -1, least)) / s.line_hz[peak], 1e-3, 0.5);
+  return std::clamp(0.5 * (edge(s, peak, 1, least) - edge(s, peak, -1, least)) / s.line_hz[peak], 1e-3, kMostDamping);
 }
 
 }  // namespace
@@ -49,8 +50,7 @@ void ExtraMode::describe(DescribeEffect& effect) {
       .summary("One more resonance than the model has.")
       .doc(
           "2 zeta w (b s - a w) / (s^2 + 2 zeta w s + w^2) is added to the response: b + j a at the resonance. A mode seen by a "
-          "sensor of "
-          "position has b = 0, by one of velocity a = 0.")
+          "sensor of position has b = 0, by one of velocity a = 0.")
       .acts(Acts::parallel);
 }
 
@@ -59,8 +59,10 @@ std::vector<FitParameter> ExtraMode::parameters(const Situation& s) const {
   double size = 0.0;
   for (const auto& m : s.missing) size = std::max(size, std::abs(m));
   if (!(size > 0.0)) size = 1.0;
-  return {positive("extra_mode_frequency", "Hz").says("resonance"),
-          positive("extra_mode_damping", "1").between(0.0, kMostDamping).says("damping ratio"),
+  FitParameter frequency = positive("extra_mode_frequency", "Hz").says("resonance");
+  // Seen from beside, a mode looks like many other things.
+  if (!s.line_hz.empty() && s.line_hz.back() > 0.0) frequency.high = s.line_hz.back();
+  return {std::move(frequency), positive("extra_mode_damping", "1").between(0.0, kMostDamping).says("damping ratio"),
           real("extra_mode_real", unit, size).says("real part of the added response at the resonance"),
           real("extra_mode_imaginary", unit, size).says("its imaginary part")};
 }

@@ -66,11 +66,12 @@ void say_missing(const PeriodicRecord& r, const JointModel& base, const Eigen::V
 
 void say_bins(const PeriodicRecord& r, const JointModel& base, const Eigen::VectorXd& values, std::size_t place, Situation& s) {
   const double duration_s = static_cast<double>(r.period * r.periods) / r.sample_rate_hz;
+  const double skipped_s = static_cast<double>(r.skip * r.period) / r.sample_rate_hz, whole_s = skipped_s + duration_s;
   const bool louder = r.input_rms >= s.input_rms;
   s.input_unit = r.input_unit;
   s.output_unit = r.output_unit;
   s.sample_time_s = r.sample_time_s();
-  s.duration_s = s.duration_s > 0.0 ? std::min(s.duration_s, duration_s) : duration_s;
+  s.duration_s = s.duration_s > 0.0 ? std::min(s.duration_s, whole_s) : whole_s;
   s.input_peak = std::max(s.input_peak, r.input_peak);
   s.input_rms = std::max(s.input_rms, r.input_rms);
   s.output_peak = std::max(s.output_peak, r.output_peak);
@@ -87,8 +88,7 @@ void say_bins(const PeriodicRecord& r, const JointModel& base, const Eigen::Vect
   const Eigen::VectorXd over_time = course(r, residual);
   s.jumps_s.clear();
   for (const Eigen::Index row : change_points(over_time, kJumps))
-    s.jumps_s.push_back(static_cast<double>(r.skip * r.period) / r.sample_rate_hz +
-                        duration_s * static_cast<double>(row) / static_cast<double>(over_time.size()));
+    s.jumps_s.push_back(skipped_s + duration_s * static_cast<double>(row) / static_cast<double>(over_time.size()));
   say_missing(r, base, values, residual, s);
 }
 

@@ -74,8 +74,12 @@ class ReactionPath {
 /// What all looks share: the record, the model's prediction and where a change of the output ends up.
 class PeriodicLook : public OpenLoop {
  public:
-  PeriodicLook(const PeriodicRecord& record, const Eigen::VectorXd& residual, const Addition& effect)
-      : r_(record), left_(unwhitened(record, residual)), periods_(effect.what.nonstationary ? record.skip + record.periods : 1) {}
+  PeriodicLook(const PeriodicRecord& record, const Eigen::VectorXd& values, const Eigen::VectorXd& residual,
+               const Addition& effect)
+      : r_(record),
+        values_(values),
+        left_(unwhitened(record, residual)),
+        periods_(effect.what.nonstationary ? record.skip + record.periods : 1) {}
 
  protected:
   Eigen::VectorXd not_finite() const {
@@ -105,8 +109,9 @@ class PeriodicLook : public OpenLoop {
   double line_hz() const { return r_.line_hz() / static_cast<double>(periods_); }
 
   const PeriodicRecord& r_;
-  Eigen::VectorXcd left_;  ///< a bin each
-  Eigen::Index periods_;   ///< that are run through
+  const Eigen::VectorXd values_;  ///< of the model without the effect
+  Eigen::VectorXcd left_;         ///< a bin each
+  Eigen::Index periods_;          ///< that are run through
 };
 
 /// A law on the motion at its place.
@@ -114,8 +119,8 @@ class LawLook final : public PeriodicLook {
  public:
   LawLook(const PeriodicRecord& record, const JointModel& model, const Eigen::VectorXd& values, const Eigen::VectorXd& residual,
           const Addition& effect, const PeriodicPrediction& predicted)
-      : PeriodicLook(record, residual, effect),
-        path_(model, values, record.known),
+      : PeriodicLook(record, values, residual, effect),
+        path_(model, values_, record.known),
         place_(static_cast<Eigen::Index>(effect.place)),
         by_reaction_(path_, place_),
         fine_(effect.what.rough || effect.what.memory > 0 ? kFineRough : kFineSmooth) {
@@ -205,8 +210,8 @@ class ClosedFormLook final : public PeriodicLook {
  public:
   ClosedFormLook(const PeriodicRecord& record, const JointModel& model, const Eigen::VectorXd& values,
                  const Eigen::VectorXd& residual, const Addition& effect, const PeriodicPrediction& predicted)
-      : PeriodicLook(record, residual, effect),
-        path_(model, values, record.known, record.sample_time_s()),
+      : PeriodicLook(record, values, residual, effect),
+        path_(model, values_, record.known, record.sample_time_s()),
         hold_(model.base->timing().hold) {
     output_ = predicted_lines();
     for (Eigen::Index j = 0; j < r_.input.cols(); ++j) input_.push_back(coefficients(r_.input.col(j)));

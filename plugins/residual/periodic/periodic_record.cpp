@@ -116,18 +116,37 @@ void set_kinds(const std::vector<Eigen::Index>& excited, PeriodicRecord& r) {
   }
 }
 
-/// Adds the noise of measured inputs to the variances of the excited lines, in the proportion that an input has in the excitation
-/// there.
-void add_input_noise(const std::vector<InputChannel>& inputs, PeriodicRecord& r) {
+/// |Y|^2 over the power of all inputs at every line: between the excited ones straight in its logarithm, beyond them even.
+Eigen::VectorXd power_gain(const std::vector<InputChannel>& inputs, const PeriodicRecord& r) {
+  std::vector<std::pair<Eigen::Index, double>> known;
   for (Eigen::Index k = 1; k < r.lines(); ++k) {
     const Eigen::Index bin = k * r.periods;
-    if (r.kind[static_cast<std::size_t>(bin)] != Kind::excited) continue;
-    double power = 0.0, noise = 0.0;
-    for (const InputChannel& c : inputs) {
-      power += std::norm(c.lines[k]);
-      if (c.noise) noise += c.noise->at(r.frequency_hz[bin]);
-    }
-    if (power > 0.0) r.variance[bin] += std::norm(r.output[bin]) * noise / power;
+    double power = 0.0;
+    for (const InputChannel& c : inputs) power += std::norm(c.lines[k]);
+    if (r.kind[static_cast<std::size_t>(bin)] == Kind::excited && power > 0.0 && std::norm(r.output[bin]) > 0.0)
+      known.emplace_back(k, std::log(std::norm(r.output[bin]) / power));
+  }
+  Eigen::VectorXd gain = Eigen::VectorXd::Zero(r.lines());
+  if (known.empty()) return gain;
+  std::size_t next = 0;
+  for (Eigen::Index k = 0; k < r.lines(); ++k) {
+    while (next < known.size() && known[next].first < k) ++next;
+    const auto& [right, above] = known[std::min(next, known.size() - 1)];
+    const auto& [left, below] = known[next > 0 ? next - 1 : 0];
+    const double part = right > left ? static_cast<double>(k - left) / static_cast<double>(right - left) : 0.0;
+    gain[k] = std::exp(below + std::clamp(part, 0.0, 1.0) * (above - below));
+  }
+  return gain;
+}
+
+/// Adds what the noise of measured inputs makes of the output to the variances of the lines that drive the model.
+void add_input_noise(const std::vector<InputChannel>& inputs, const std::vector<bool>& drives_all, PeriodicRecord& r) {
+  const Eigen::VectorXd gain = power_gain(inputs, r);
+  for (Eigen::Index k = 0; k < r.lines(); ++k) {
+    const Eigen::Index bin = k * r.periods;
+    const bool always = k == 0 || r.kind[static_cast<std::size_t>(bin)] == Kind::excited;
+    for (std::size_t j = 0; j < inputs.size(); ++j)
+      if (inputs[j].noise && (always || drives_all[j])) r.variance[bin] += gain[k] * inputs[j].noise->at(r.frequency_hz[bin]);
   }
 }
 
@@ -256,10 +275,12 @@ Expected<PeriodicRecord> periodic_record(const records::Recording& recording, st
   for (std::size_t j = 0; j < inputs.size(); ++j) r.input_lines.col(static_cast<Eigen::Index>(j)) = inputs[j].lines.head(lines);
   set_kinds(*excited, r);
   r.variance = r.floor.at(r.frequency_hz);
-  add_input_noise(inputs, r);
+  std::vector<bool> drives_all;
+  for (const InputChannel& c : inputs) drives_all.push_back(!c.noise || has_own_lines(c, r));
+  add_input_noise(inputs, drives_all, r);
   for (std::size_t j = 0; j < inputs.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
-    if (inputs[j].noise && !has_own_lines(inputs[j], r)) r.input.col(column) = cleared(r.input.col(column), r);
+    if (!drives_all[j]) r.input.col(column) = cleared(r.input.col(column), r);
   }
   return r;
 }

@@ -31,7 +31,7 @@ struct PeriodicRecord {
   Eigen::VectorXcd output;       ///< bins
   std::vector<Kind> kind;        ///< a bin each
   Eigen::VectorXd frequency_hz;  ///< a bin each
-  Eigen::VectorXd variance;      ///< E|dY|^2 a bin, with what the noise of measured inputs adds at the excited lines
+  Eigen::VectorXd variance;      ///< E|dY|^2 a bin, with what the noise of measured inputs adds at lines that drive the model
   FloorOfBins floor;             ///< of `output`
   double input_rms = 0.0, input_peak = 0.0, output_rms = 0.0, output_peak = 0.0;  ///< of the mean period, first input
 
@@ -46,7 +46,8 @@ struct PeriodicRecord {
 ///
 /// Method: whole-record spectrum; every P-th bin is a line of the period, the others hold noise alone unless something changes
 /// from period to period. Measured inputs drive the model with their own noise, which adds |Y|^2 var(U) / |U|^2 at the excited
-/// lines; the lines that an input does not excite are set to zero where they hold no more than its noise. Errors, by name: other
+/// lines, and as much for a unit of it at the mean and at other lines that drive the model; the lines that an input does not
+/// excite are set to zero where all of them hold no more than its noise. Errors, by name: other
 /// channels than the base has inputs, no period, fewer than 2 periods, no excited line, an excited line beyond 0.8 of the Nyquist
 /// frequency, an output without noise.
 Expected<PeriodicRecord> periodic_record(const records::Recording& recording, std::vector<double> known, const BaseModel& base);

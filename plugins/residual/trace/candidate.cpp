@@ -16,9 +16,11 @@ constexpr std::size_t kSearches = 2;
 constexpr double kMoreThere = 1.05;
 // A simulation that does so much of what the look promised confirms it.
 constexpr double kKept = 0.8;
-constexpr int kFirstSteps = 3, kMoreSteps = 10;
+constexpr int kFirstSteps = 3, kMoreSteps = 10, kStepsCarriedOver = 2;
 // What chance does more often than that is not looked at more closely near the noise.
 constexpr double kWorthASearch = 0.05;
+// Nor what can be no more than so small a part of what is missing.
+constexpr double kWorthOfMissing = 0.02;
 // In units of minus twice the log likelihood: what chance alone moves by more.
 constexpr double kLeastFallOfCost = 0.05;
 // A base that leaves more than this many times the noise may have been pulled far by what is missing: its own starts help.
@@ -112,7 +114,8 @@ Approach search_by_looks(Attempt& attempt, const std::vector<Eigen::VectorXd>& s
   LookedUp up = look_up(attempt.problem, *attempt.looks, against.before.fit, from);
   attempt.promised = std::max(attempt.promised, up.promised);
   if (!attempt.null.looked) attempt.find_null(up.promised);
-  const bool matters = attempt.null.p(std::max(up.promised, attempt.gain(up.approach))) < kWorthASearch;
+  const double seen = std::max(up.promised, attempt.gain(up.approach));
+  const bool matters = attempt.null.p(seen) < kWorthASearch && seen > kWorthOfMissing * against.missing;
   const auto kept = [&](const Approach& a) { return a.started && attempt.gain(a) >= kKept * up.promised; };
   const EffectDescription& what = attempt.problem.model().additions.back().what;
   const bool smooth = !what.rough && what.memory == 0;
@@ -276,6 +279,25 @@ Candidate try_effect(const Addition& addition, const Against& against) {
   measure(against, fit_at(problem, best), c);
   c.with.fit.jacobian.resize(0, 0);  // as many as there are candidates: it is formed again where it is needed
   return c;
+}
+
+void carry_over(const Against& against, Candidate& c) {
+  if (!c.tried) return;
+  const JointModel model = c.with.fit.model;
+  const auto own = static_cast<Eigen::Index>(c.addition.parameters.size());
+  FitProblem problem(model, against.bench.fit, static_cast<Eigen::Index>(model.parameters().size()) - own);
+  problem.bound_base(c.with.fit.at);
+  Approach a = approach_from(problem, c.with.fit.at, against.before.fit.jacobian);
+  approach(problem, kStepsCarriedOver, kLeastFallOfCost, false, a);
+  if (!a.started) {
+    c.tried = false;
+    c.reason = "could not be fitted: the model with it can't be computed on the whole of the records";
+    return;
+  }
+  // A tone is looked for among the bins of the whole record.
+  if (c.addition.what.acts == Acts::tone) c.null = null_distribution(problem, against.before.fit, {c.values()}, 0.0, nullptr);
+  measure(against, fit_at(problem, a), c);
+  c.with.fit.jacobian.resize(0, 0);
 }
 
 void go_on(const Against& against, Candidate& c) {

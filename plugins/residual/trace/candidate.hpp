@@ -69,11 +69,14 @@ struct Against {
   const Eigen::VectorXd& original_select;  ///< residual of the base model alone on the selecting record
   const std::vector<Eigen::VectorXd>& base_starts;
   bool near_noise = false;  ///< what is left passes the class tests: small effects act linearly
+  double missing = 0.0;     ///< of chi2 of the fitted records, with the base model alone: what is not noise
 };
 
 /// The candidate after a quick search from its starts, numbers filled in and not judged. Near the noise one that chance makes as
 /// good more than once in twenty times is not searched: its gain is that of the linear look.
 Candidate try_effect(const Addition& addition, const Against& against);
+/// Takes a candidate that was tried on parts of the fitted records to the whole ones, with a few more steps.
+void carry_over(const Against& against, Candidate& c);
 /// Goes on with a promising one.
 void go_on(const Against& against, Candidate& c);
 /// Goes on to the optimum.

@@ -1,5 +1,6 @@
 #include "trace/coordinates.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "records/signals.hpp"
@@ -7,8 +8,13 @@
 namespace bodeflow::residual {
 namespace {
 
+// Logarithms of what is still a number, and has a logarithm again.
+constexpr double kFarthest = 600.0;
+
 double coordinate(const FitParameter& p, double value) { return p.logarithmic ? std::log(value) : value / p.scale; }
-double value_at(const FitParameter& p, double c) { return p.logarithmic ? std::exp(c) : c * p.scale; }
+double value_at(const FitParameter& p, double c) {
+  return p.logarithmic ? std::exp(std::clamp(c, -kFarthest, kFarthest)) : c * p.scale;
+}
 
 }  // namespace
 

@@ -95,8 +95,11 @@ class Measurement {
   /// Parameters of its own that residual eliminates for that model.
   virtual Eigen::Index eliminated(const JointModel& model, const Eigen::VectorXd& values) const = 0;
 
+  /// A part of the record that is enough for a quick search, in the same units; nullptr where the whole is hardly longer.
+  virtual std::shared_ptr<const Measurement> excerpt() const { return nullptr; }
+
   /// The look at an effect beside that model, which leaves `residual` at those values; nullptr where the residual itself is as
-  /// quick, or no such look is known. It refers to this measurement.
+  /// quick, or no such look is known. It refers to this measurement and to `model`.
   virtual std::unique_ptr<const OpenLoop> open_loop(const JointModel& /*model*/, const Eigen::VectorXd& /*values*/,
                                                     const Eigen::VectorXd& /*residual*/, const Addition& /*effect*/) const {
     return nullptr;

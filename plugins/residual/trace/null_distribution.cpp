@@ -23,7 +23,9 @@ constexpr std::size_t kKeptStarts = 2;
 // Such a p of a single trial is below any level however many trials there were.
 constexpr double kBeyondDoubt = 1e-12;
 // A direction of which less is left beside those of the model is one that the model has already.
-constexpr double kNothingNew = 1e-4, kNothingNewToLooks = 1e-2;
+// Looks are good to a few thousandths, where the time counts to some per cent: what changes before the record is only seen as an
+// end of a transient.
+constexpr double kNothingNew = 1e-4, kNothingNewToLooks = 1e-2, kNothingNewInTime = 0.15;
 // Neighbours on a fine grid share this part of their direction: the largest gain between them is then hardly above theirs.
 constexpr double kAlike = 0.8;
 constexpr std::size_t kMostPoints = 64;
@@ -357,8 +359,8 @@ Null null_distribution(const FitProblem& problem, const Fit& from, const std::ve
     return n;
   }
   const auto per_point = static_cast<Eigen::Index>(amplitudes.size());
-  const Scorer scorer(beside, from, effect.parameters, amplitudes, looks != nullptr ? kNothingNewToLooks : kNothingNew,
-                      starts.front());
+  const double nothing_new = looks == nullptr ? kNothingNew : effect.what.nonstationary ? kNothingNewInTime : kNothingNewToLooks;
+  const Scorer scorer(beside, from, effect.parameters, amplitudes, nothing_new, starts.front());
   std::vector<Score> found = scores(scorer, starts, ranges, effect.what.linear() || looks != nullptr ? kAttempts : kSlowAttempts);
   Eigen::MatrixXd unit(scorer.rows(), per_point * static_cast<Eigen::Index>(found.size()));
   for (std::size_t g = 0; g < found.size(); ++g)

@@ -5,12 +5,14 @@
 #include <cmath>
 
 #include "records/signals.hpp"
+#include "trace/excerpt.hpp"
 
 namespace bodeflow::residual {
 namespace {
 
 // A candidate that gains less than this part of what the best one does is no rival: it is not fitted to the end.
-constexpr double kRival = 0.5;
+// One that was searched for by looks is nearer to its end.
+constexpr double kRival = 0.5, kNearRival = 0.8;
 // One that has gained so much of it after a few steps may still overtake.
 constexpr double kPromising = 0.2;
 constexpr std::size_t kMostSettled = 6;
@@ -54,7 +56,10 @@ class Searcher {
   Step try_all(const Examined& before, const Catalogue& catalogue, bool first, bool priced) {
     Step step;
     const bool near = floor_known_ && !before.tests.empty() && before.smallest_p() > out_.levels.p_class();
-    const Against against{bench_, before, out_.base.select.residual, base_starts_, near};
+    const Fit& base = out_.base.fit;
+    const double missing = floor_known_ ? std::max(base.chi2 - static_cast<double>(base.residual.size()), 0.0) : 0.0;
+    const Against against{bench_, before, out_.base.select.residual, base_starts_, near, near ? 0.0 : missing};
+    const std::optional<Excerpt> excerpt = near ? std::nullopt : excerpt_of(bench_, before);
     std::vector<Bound> all = bind_all(catalogue, before.fit.model, values_of(before.fit), bench_.fit);
     if (settings_.progress) {
       const auto fit = std::count_if(all.begin(), all.end(), [](const Bound& b) { return b.refusal.empty(); });
@@ -66,7 +71,13 @@ class Searcher {
         if (out_.steps.empty()) out_.refused.push_back(std::move(b));
         continue;
       }
-      step.candidates.push_back(try_effect(b.addition, against));
+      if (excerpt) {
+        const Against part{excerpt->bench, excerpt->before, against.original_select, base_starts_, near};
+        step.candidates.push_back(try_effect(b.addition, part));
+        carry_over(against, step.candidates.back());
+      } else {
+        step.candidates.push_back(try_effect(b.addition, against));
+      }
     }
     if (priced) out_.levels.candidates += step.candidates.size();
     step.levels = out_.levels;
@@ -101,8 +112,8 @@ class Searcher {
         if (c.tried) best = std::max(best, c.merit());
       Candidate* next = nullptr;
       for (Candidate& c : all) {
-        if (!c.tried || c.with.fit.polished || c.p > kNearLevel * step.levels.p_candidate() || c.merit() < kRival * best)
-          continue;
+        const double rival = c.approached ? kNearRival : kRival;
+        if (!c.tried || c.with.fit.polished || c.p > kNearLevel * step.levels.p_candidate() || c.merit() < rival * best) continue;
         if (next == nullptr || c.merit() > next->merit()) next = &c;
       }
       if (next == nullptr) return;

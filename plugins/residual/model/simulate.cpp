@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "model/sample_delay.hpp"
 #include "model/stepper.hpp"
@@ -53,20 +54,47 @@ PlantMatrices with_extra(const PlantMatrices& p) {
   return all;
 }
 
+/// A plant ready to be stepped by drives of one kind.
+struct Machine {
+  Machine(const JointModel& model, const PlantMatrices& p, const Laws& laws, const Drive& drive)
+      : extra(drive.extra_reaction.size() > 0),
+        plant(extra ? with_extra(p) : p),
+        plan{&plant, &laws, drive.hold == Hold::zero_order && !extra ? Push::held : Push::straight, drive.signals},
+        grid(grid_of(model, laws, drive, sample_delay(drive.delay_s, drive.sample_time_s).offset_s)),
+        values_per_sample(drive.values_per_sample),
+        stepper(plan, grid) {}
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+
+  bool fits(const Drive& drive) const {
+    const bool held = drive.hold == Hold::zero_order && !extra;
+    return extra == (drive.extra_reaction.size() > 0) && plan.signals == drive.signals && held == (plan.push == Push::held) &&
+           values_per_sample == drive.values_per_sample && grid.sample_time_s == drive.sample_time_s &&
+           grid.offset_s == sample_delay(drive.delay_s, drive.sample_time_s).offset_s;
+  }
+
+  bool extra;
+  PlantMatrices plant;
+  StepPlan plan;
+  StepGrid grid;
+  int values_per_sample;
+  Stepper stepper;
+};
+
 /// A drive on its way through a stepper.
 class Run {
  public:
-  Run(const JointModel& model, const PlantMatrices& plant, const Laws& laws, const Drive& drive)
-      : plant_(drive.extra_reaction.size() > 0 ? with_extra(plant) : plant),
+  Run(Machine& machine, const Drive& drive)
+      : plant_(machine.plant),
         drive_(drive),
         delay_(sample_delay(drive.delay_s, drive.sample_time_s)),
         values_(static_cast<Eigen::Index>(drive.values_per_sample)),
         samples_(drive.input.rows() / values_),
-        extra_(drive.extra_reaction.size() > 0),
+        extra_(machine.extra),
         held_(drive.hold == Hold::zero_order),
-        plan_{&plant_, &laws, held_ && !extra_ ? Push::held : Push::straight, drive.signals},
-        grid_(grid_of(model, laws, drive, delay_.offset_s)),
-        stepper_(plan_, grid_) {
+        plan_(machine.plan),
+        grid_(machine.grid),
+        stepper_(machine.stepper) {
     input_.resize(plant_.inputs(), drive.input.rows());
     input_.topRows(drive.input.cols()) = drive.input.transpose();
     if (extra_) input_.bottomRows(drive.extra_reaction.cols()) = drive.extra_reaction.transpose();
@@ -98,14 +126,14 @@ class Run {
   }
   void take_off_drift(const Eigen::VectorXd& drift, Simulated& s) const;
 
-  PlantMatrices plant_;
+  const PlantMatrices& plant_;
   const Drive& drive_;
   SampleDelay delay_;
   Eigen::Index values_, samples_;
   bool extra_, held_;
-  StepPlan plan_;
-  StepGrid grid_;
-  Stepper stepper_;
+  const StepPlan& plan_;
+  const StepGrid& grid_;
+  Stepper& stepper_;
   Eigen::MatrixXd input_;      ///< inputs x values
   Eigen::MatrixXd from_, to_;  ///< of a straight push: inputs x steps, at their begins and ends
   bool frozen_ = false;        ///< the time of laws stands still: before the record
@@ -321,25 +349,44 @@ Expected<void> check(const PlantMatrices& plant, const Drive& drive) {
 
 }  // namespace
 
-Expected<Simulated> simulate(const JointModel& model, const Eigen::VectorXd& values, std::span<const double> known,
-                             const Drive& drive) {
-  if (!model.base->has_state_space()) return refused("a base model without a state space can't be simulated");
-  const auto plant = plant_matrices(*model.base, values.data(), known);
+struct Simulation::Ready {
+  std::optional<PlantMatrices> plant;
+  std::optional<Laws> laws;
+  std::unique_ptr<Machine> machine;
+};
+
+Simulation::Simulation(const JointModel& model, const Eigen::VectorXd& values, std::span<const double> known)
+    : model_(&model), ready_(std::make_unique<Ready>()) {
+  if (!model.base->has_state_space()) return;
+  ready_->plant = plant_matrices(*model.base, values.data(), known);
+  if (ready_->plant) ready_->laws.emplace(model, values, known);
+}
+
+Simulation::~Simulation() = default;
+
+Expected<Simulated> Simulation::run(const Drive& drive) {
+  if (!model_->base->has_state_space()) return refused("a base model without a state space can't be simulated");
   const auto not_finite = [&] {
     Simulated s;
     const Eigen::Index samples = drive.input.rows() / std::max(drive.values_per_sample, 1) * (drive.periodic ? drive.periods : 1);
     s.output = Eigen::VectorXd::Constant(samples, std::numeric_limits<double>::quiet_NaN());
-    const Eigen::Index places = static_cast<Eigen::Index>(model.base->places().size());
+    const Eigen::Index places = static_cast<Eigen::Index>(model_->base->places().size());
     s.flow = s.stored = Eigen::MatrixXd::Constant(samples, places, std::numeric_limits<double>::quiet_NaN());
     return s;
   };
-  if (!plant) return not_finite();
-  if (auto fits = check(*plant, drive); !fits) return tl::unexpected(fits.error());
-  const Laws laws(model, values, known);
-  Run run(model, *plant, laws, drive);
+  if (!ready_->plant) return not_finite();
+  if (auto fits = check(*ready_->plant, drive); !fits) return tl::unexpected(fits.error());
+  if (!ready_->machine || !ready_->machine->fits(drive))
+    ready_->machine = std::make_unique<Machine>(*model_, *ready_->plant, *ready_->laws, drive);
+  Run run(*ready_->machine, drive);
   Simulated s = drive.periodic ? run.periodic() : run.once();
   if (!s.output.allFinite() || !s.state.allFinite()) return not_finite();
   return s;
+}
+
+Expected<Simulated> simulate(const JointModel& model, const Eigen::VectorXd& values, std::span<const double> known,
+                             const Drive& drive) {
+  return Simulation(model, values, known).run(drive);
 }
 
 Eigen::MatrixXd refined(const Eigen::MatrixXd& input, int values_per_sample) {

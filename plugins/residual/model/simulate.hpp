@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 
 #include "model/joint_model.hpp"
@@ -44,6 +45,20 @@ struct Simulated {
 /// Errors: sizes that do not fit, a model without state space.
 Expected<Simulated> simulate(const JointModel& model, const Eigen::VectorXd& values, std::span<const double> known,
                              const Drive& drive);
+
+/// The same for many drives, prepared once; for one thread.
+class Simulation {
+ public:
+  /// Refers to its arguments, which have to outlive it.
+  Simulation(const JointModel& model, const Eigen::VectorXd& values, std::span<const double> known);
+  ~Simulation();
+  Expected<Simulated> run(const Drive& drive);
+
+ private:
+  struct Ready;
+  const JointModel* model_;
+  std::unique_ptr<Ready> ready_;
+};
 
 /// A periodic input, one row a sample, as `values_per_sample` values for each: straight lines between them have the spectrum of
 /// the input up to the Nyquist frequency (its own line left out).

@@ -62,6 +62,8 @@ void Stepper::begin(const Eigen::VectorXd& state, const double* input, double ti
   std::copy(state.data(), state.data() + n_, x_.begin());
   std::fill(w_.begin(), w_.end(), 0.0);
   std::fill(memory_.begin(), memory_.end(), 0.0);
+  std::fill(scale_.begin(), scale_.end(), 0.0);
+  std::fill(u_.begin(), u_.end(), std::numeric_limits<double>::quiet_NaN());
   predicts_ = false;
   sound_ = state.allFinite();
   resettle(time_s, input);

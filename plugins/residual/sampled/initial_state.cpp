@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kSteps = 20, kStepsBetween = 2, kHalvings = 5;
 constexpr Eigen::Index kFirst = 25;  // samples a state
-// Of the errors' norm: a step that promises less ends the search. Far below what the differences of a fit resolve.
-constexpr double kSettled = 1e-10;
+// Of the squared error: a step that promises less is the last, as what it leaves is far below that.
+constexpr double kSettled = 1e-8;
 constexpr double kWeak = 1e-8;  // of the strongest direction: not shown by the output
 // Differences for derivatives, of the output's size: coarse ones look past the kinks of friction, finer ones follow once a step
 // gains little.
@@ -28,6 +28,7 @@ class Search {
     // One unit of a state moves the output by its own size, as far as the linear part tells.
     const double size = std::max(measured_.norm(), 1e-300), usual = size / std::sqrt(static_cast<double>(stretch_.count));
     for (double& u : unit_) u = u > 0.0 ? size / u : usual;
+    difference_ = prediction_.rough() ? kCoarse : kFinest;
     state_ = start.size() > 0 ? start : Eigen::VectorXd::Zero(unit_.size());
     auto error = error_at(state_);
     if (!error) return tl::unexpected(error.error());
@@ -37,10 +38,10 @@ class Search {
       if (!known && !differentiate()) break;
       const double before = error_.squaredNorm();
       if (auto tried = take_step(); !tried) return tl::unexpected(tried.error());
-      if (prediction_.linear()) break;
       const double after = error_.squaredNorm();
-      if (after > kLittle * before) difference_ *= kFiner;
-      if (difference_ < kFinest && !(after < (1.0 - kSettled) * before)) break;
+      const bool finest = difference_ <= kFinest;
+      if (prediction_.linear() || (finest && (promised_ <= kSettled * before || !(after < before)))) break;
+      if (!finest && after > kLittle * before) difference_ = std::max(difference_ * kFiner, kFinest);
     }
     return state_;
   }
@@ -69,6 +70,7 @@ class Search {
     solver.setThreshold(kWeak);
     solver.compute(slopes_ * unit_.asDiagonal());
     Eigen::VectorXd step = unit_.asDiagonal() * solver.solve(error_);
+    promised_ = (slopes_ * step).squaredNorm();
     for (int halving = 0; halving <= kHalvings; ++halving, step *= 0.5) {
       const Eigen::VectorXd next = state_ + step;
       auto error = error_at(next);
@@ -87,6 +89,7 @@ class Search {
   Eigen::MatrixXd slopes_;
   Eigen::VectorXd unit_, state_, error_;
   double difference_ = kCoarse;  ///< of the differences that stand for derivatives, in units
+  double promised_ = 0.0;        ///< fall of the squared error by the last step, as the slopes tell
 };
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace bodeflow::residual {
 namespace {
 
 constexpr Eigen::Index kLeastSamples = 100;
-constexpr Eigen::Index kWindow = 25, kShortest = 50;  // samples a state
+constexpr Eigen::Index kWindow = 25, kShortest = 50;     // samples a state
+constexpr Eigen::Index kPieces = 4, kLeastSegments = 4;  // of an excerpt
 constexpr double kTimeConstants = 4.0;
 constexpr double kOversampling = 2.0;  // half the rate of rows over the corner: the filter has 48 dB there
 // A pole that is slower than the fastest one by this factor integrates.
@@ -100,6 +101,29 @@ Expected<Layout> make_layout(Eigen::Index samples, double sample_time_s, const B
   }
   finish(l);
   return l;
+}
+
+std::optional<Layout> excerpt_of(const Layout& whole, Eigen::Index rows) {
+  Layout part = whole;
+  part.segments.clear();
+  part.row_stretches.clear();
+  part.rows = 0;
+  const auto count = static_cast<Eigen::Index>(whole.segments.size());
+  const Layout::Segment& first = whole.segments.front();
+  if (count == 1 && first.window > 0) {
+    const Eigen::Index length = first.window + rows / kPieces;
+    if (2 * kPieces * length > first.samples.count) return {};
+    for (Eigen::Index i = 0; i < kPieces; ++i) {
+      const Eigen::Index at = first.samples.first + i * (first.samples.count - length) / (kPieces - 1);
+      part.segments.push_back({{at, length}, first.window, at + first.window, length - first.window});
+    }
+  } else {
+    const Eigen::Index every = whole.rows / rows;
+    if (every < 2 || count / every < kLeastSegments) return {};
+    for (Eigen::Index i = every / 2; i < count; i += every) part.segments.push_back(whole.segments[static_cast<std::size_t>(i)]);
+  }
+  finish(part);
+  return part;
 }
 
 }  // namespace bodeflow::residual

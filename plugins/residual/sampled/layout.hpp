@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "expected.hpp"
@@ -36,5 +37,9 @@ struct Layout {
 /// Errors: fewer samples than 100 and than 50 a state.
 Expected<Layout> make_layout(Eigen::Index samples, double sample_time_s, const BaseModel& base, const Eigen::VectorXd& values,
                              const std::vector<double>& known, double segment_s);
+
+/// A part of a cut with about that many rows, spread evenly over the record: pieces with a state of their own each, or some of
+/// the segments. Nothing where that spares less than half.
+std::optional<Layout> excerpt_of(const Layout& whole, Eigen::Index rows);
 
 }  // namespace bodeflow::residual

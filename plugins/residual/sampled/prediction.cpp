@@ -36,6 +36,7 @@ Expected<Prediction> Prediction::make(const RecordInput& record, const JointMode
     if (auto done = p.answer_by_spectrum(); !done) return tl::unexpected(done.error());
   } else {
     if (model.has(Acts::parallel)) p.add_parallel();
+    if (p.states_ > 0) p.simulation_ = std::make_shared<Simulation>(model, values, record.known());
     if (model.has(Acts::input)) p.own_input_ = record.mapped_values(model, values);
   }
   return p;
@@ -61,6 +62,11 @@ void Prediction::add_parallel() {
       if (model_->additions[a].what.acts == Acts::parallel) sum += model_->additions[a].effect->transfer(values_of(a), s_at(f));
     return sum * record_->path(f) * std::exp(-s_at(f) * more_s);
   });
+}
+
+bool Prediction::rough() const {
+  const auto kinks = [](const Addition& a) { return a.what.rough || a.what.memory > 0; };
+  return model_->base->has_laws() || std::any_of(model_->additions.begin(), model_->additions.end(), kinks);
 }
 
 Eigen::VectorXd Prediction::certainty(const Stretch& stretch) const {
@@ -118,7 +124,7 @@ Simulated Prediction::without_states(const Stretch& stretch) const {
   return s;
 }
 
-Expected<Simulated> Prediction::simulated(const Stretch& stretch, const Eigen::VectorXd& state) const {
+Expected<Simulated> Prediction::simulated(const Stretch& stretch, const Eigen::VectorXd& state, bool signals) const {
   const double t = record_->sample_time_s();
   // The stretch begins with its state whatever the delay: whole samples of it move the input.
   const SampleDelay delay = sample_delay(model_->delay_s(*values_), t);
@@ -129,15 +135,17 @@ Expected<Simulated> Prediction::simulated(const Stretch& stretch, const Eigen::V
   drive.delay_s = -delay.offset_s;
   drive.start_s = static_cast<double>(stretch.first) * t;
   drive.initial = state;
+  drive.signals = signals;
   const Eigen::Index each = drive.values_per_sample, last = record_->samples() - 1;
   // One sample more than asked for: with it the input after the last one is known.
   drive.input.resize((stretch.count + 1) * each, input().cols());
   const Eigen::Index first = stretch.first - delay.late;
   for (Eigen::Index n = 0; n <= stretch.count; ++n)
     drive.input.middleRows(n * each, each) = input().middleRows(std::clamp<Eigen::Index>(first + n, 0, last) * each, each);
-  auto s = simulate(*model_, *values_, record_->known(), drive);
+  auto s = simulation_->run(drive);
   if (!s) return s;
   s->output.conservativeResize(stretch.count);
+  if (!signals) return s;
   s->flow.conservativeResize(stretch.count, Eigen::NoChange);
   s->stored.conservativeResize(stretch.count, Eigen::NoChange);
   return s;
@@ -166,7 +174,7 @@ void Prediction::apply_output_effects(const Stretch& stretch, Simulated& s) cons
   }
 }
 
-Expected<Simulated> Prediction::run(const Stretch& stretch, const Eigen::VectorXd& state) const {
+Expected<Simulated> Prediction::run(const Stretch& stretch, const Eigen::VectorXd& state, bool signals) const {
   Simulated s;
   if (by_spectrum_) {
     s.output = added_.segment(stretch.first, stretch.count);
@@ -174,7 +182,7 @@ Expected<Simulated> Prediction::run(const Stretch& stretch, const Eigen::VectorX
   } else if (states_ == 0) {
     s = without_states(stretch);
   } else {
-    auto run = simulated(stretch, state);
+    auto run = simulated(stretch, state, signals);
     if (!run) return run;
     s = std::move(*run);
   }

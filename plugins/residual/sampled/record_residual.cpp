@@ -53,7 +53,7 @@ Eigen::VectorXd SampledRecord::rows_of(const Eigen::VectorXd& at_samples) const 
   return rows;
 }
 
-Expected<Predicted> predict(const SampledRecord& record, const JointModel& model, const Eigen::VectorXd& values) {
+Expected<Predicted> predict(const SampledRecord& record, const JointModel& model, const Eigen::VectorXd& values, bool signals) {
   const auto prediction = Prediction::make(record.input, model, values);
   if (!prediction) return tl::unexpected(prediction.error());
   Predicted p;
@@ -62,7 +62,7 @@ Expected<Predicted> predict(const SampledRecord& record, const JointModel& model
     const Stretch window{s.samples.first, s.window};
     const auto state = initial_state(*prediction, window, record.output.segment(window.first, window.count));
     if (!state) return tl::unexpected(state.error());
-    const auto run = prediction->run(s.samples, *state);
+    const auto run = prediction->run(s.samples, *state, signals);
     if (!run) return tl::unexpected(run.error());
     p.output.segment(s.samples.first, s.samples.count) = run->output;
     if (run->flow.size() == 0) continue;

@@ -26,8 +26,9 @@ struct Predicted {
   Eigen::MatrixXd flow, stored;  ///< samples x places; empty where the model was not simulated
 };
 
-/// Each segment from the state that fits its window best. Errors: those of Prediction.
-Expected<Predicted> predict(const SampledRecord& record, const JointModel& model, const Eigen::VectorXd& values);
+/// Each segment from the state that fits its window best; flow and stored where `signals`. Errors: those of Prediction.
+Expected<Predicted> predict(const SampledRecord& record, const JointModel& model, const Eigen::VectorXd& values,
+                            bool signals = false);
 
 /// Measured minus predicted at the rows, amplitudes and phases of the model's tones fitted to it and taken off; not finite
 /// where the model can't be computed.

@@ -21,7 +21,7 @@ namespace {
 constexpr Eigen::Index kLeastSamples = 128;  // for a response to start from
 constexpr double kCoarseStep = 1e-3;
 constexpr double kFeedback = 1e-3, kDrift = 4.0;
-constexpr Eigen::Index kMostDrawn = 4000;
+constexpr Eigen::Index kMostDrawn = 4000, kExcerpt = 8000;
 
 class SampledMeasurement final : public Measurement {
  public:
@@ -42,6 +42,13 @@ class SampledMeasurement final : public Measurement {
     return unexplained(record_, model, values) / unit_;
   }
   Eigen::Index eliminated(const JointModel& model, const Eigen::VectorXd& values) const override;
+  std::shared_ptr<const Measurement> excerpt() const override {
+    auto part = excerpt_of(record_.layout, kExcerpt);
+    if (!part) return nullptr;
+    auto m = std::make_shared<SampledMeasurement>(*this);
+    m->cut(std::move(*part));
+    return m;
+  }
   /// The states that segments begin with are found to about 1e-5 where laws have kinks.
   double difference_step(const JointModel& model) const override {
     return record_.layout.segments.size() > 1 && model.has(Acts::law) ? kCoarseStep : Measurement::difference_step(model);

@@ -108,7 +108,7 @@ class Run {
   /// Runs the sample times [from, to) of the input; sample n of the output goes to row n of `into` where there is one.
   void run(Eigen::Index from, Eigen::Index to, Eigen::Index wrap, Simulated* into);
   void divide_input();
-  Eigen::VectorXd after(Eigen::Index column) const;
+  Eigen::Index after(Eigen::Index column) const;
   Eigen::Index sample_of(Eigen::Index m) const;
   void keep(Eigen::Index row, Simulated& into) const;
   Simulated room(Eigen::Index rows) const;
@@ -145,10 +145,10 @@ Eigen::Index Run::sample_of(Eigen::Index m) const {
   return n < 0 ? n + samples_ : n;
 }
 
-/// The value that follows that one.
-Eigen::VectorXd Run::after(Eigen::Index column) const {
-  if (column + 1 < input_.cols()) return input_.col(column + 1);
-  return input_.col(drive_.periodic ? 0 : column);
+/// The column of the value that follows that one.
+Eigen::Index Run::after(Eigen::Index column) const {
+  if (column + 1 < input_.cols()) return column + 1;
+  return drive_.periodic ? 0 : column;
 }
 
 void Run::divide_input() {
@@ -157,12 +157,13 @@ void Run::divide_input() {
   from_.resize(input_.rows(), input_.cols() * each);
   to_.resizeLike(from_);
   for (Eigen::Index c = 0; c < input_.cols(); ++c) {
-    const Eigen::VectorXd here = input_.col(c);
-    Eigen::VectorXd rise = after(c) - here;
-    rise.head(held).setZero();
-    for (int part = 0; part < each; ++part) {
-      from_.col(c * each + part) = here + static_cast<double>(part) / each * rise;
-      to_.col(c * each + part) = here + static_cast<double>(part + 1) / each * rise;
+    const Eigen::Index next = after(c);
+    for (Eigen::Index j = 0; j < input_.rows(); ++j) {
+      const double here = input_(j, c), rise = j < held ? 0.0 : input_(j, next) - here;
+      for (int part = 0; part < each; ++part) {
+        from_(j, c * each + part) = here + static_cast<double>(part) / each * rise;
+        to_(j, c * each + part) = here + static_cast<double>(part + 1) / each * rise;
+      }
     }
   }
 }

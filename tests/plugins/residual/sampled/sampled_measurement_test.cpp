@@ -201,6 +201,18 @@ TEST_CASE("sampled: a lag in series and a tone on top are taken into account") {
   CHECK(told.peaks_hz[0] == Approx(31.7).margin(0.02));
 }
 
+TEST_CASE("sampled: quick searches get a part of a long record, spread over it, and of a short one nothing") {
+  const Eigen::VectorXd u = 5.0 * coloured_noise(5, 40000, 0.6), y = oscillator(u, 0.0);
+  const auto base = held_plant();
+  const auto m = measured(*base, u, y);
+  const auto part = m->excerpt();
+  REQUIRE(part);
+  CHECK(part->rows() == 8000);
+  const JointModel model{base, {}};
+  CHECK(part->error(part->residual(model, kPlant)).error < 1e-6 * rms(y));
+  CHECK(measured(*base, u.head(5000), y.head(5000))->excerpt() == nullptr);
+}
+
 TEST_CASE("sampled: what is said of a record: sizes, coefficients, what is missing") {
   const Eigen::VectorXd u = 5.0 * coloured_noise(5, 6000, 0.6), y = oscillator(u, 0.0);
   const auto base = held_plant();
@@ -228,7 +240,7 @@ TEST_CASE("sampled: what is said of a record: sizes, coefficients, what is missi
 TEST_CASE("sampled: an axis that integrates is cut into segments and its friction found in a closed loop") {
   // 2 kg, 4 N s/m and 1.5 N of dry friction under a position controller; small steps resolve where it sticks.
   const double rate = 500.0, mass = 2.0, viscous = 4.0, coulomb = 1.5;
-  const Eigen::Index n = 3000;
+  const Eigen::Index n = 2000;
   numerics::Random random(8);
   Eigen::VectorXd u(n), y(n);
   double x = 0.0, v = 0.0;

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   add_test_plugin(app, session);
   add_rerun(app, session);
   add_report(app, session);
+  add_export(app, session);
   add_doctor(app, session);
   add_completion(app, session);
   add_internal(app, session);

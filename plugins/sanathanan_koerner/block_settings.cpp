@@ -35,16 +35,19 @@ void describe_selection(Describe& d) {
   d.parameter("tier_above", 1e-4).unit("1").range(0, 1).doc("weight of the lines above tier_band");
 }
 
-Selection read_selection(const bodeflow::Parameters& p) {
+Weighting read_weighting(const Parameters& p) {
+  const std::string& weighting = p.text("weighting");
+  if (weighting == "absolute") return Weighting::absolute;
+  if (weighting == "relative") return Weighting::relative;
+  return weighting == "variance" ? Weighting::variance : Weighting::automatic;
+}
+
+Selection read_selection(const Parameters& p) {
   Selection s;
   s.inputs = p.texts("inputs");
   s.outputs = p.texts("outputs");
   s.band = p.text("band");
-  const std::string& weighting = p.text("weighting");
-  s.weighting = weighting == "absolute"   ? Weighting::absolute
-                : weighting == "relative" ? Weighting::relative
-                : weighting == "variance" ? Weighting::variance
-                                          : Weighting::automatic;
+  s.weighting = read_weighting(p);
   const std::string& tiers = p.text("tier_band");
   if (tiers.empty()) return s;
   const auto band = records::parse_band(tiers, 0.0);
@@ -65,7 +68,7 @@ void describe_method(Describe& d) {
   d.parameter("refine", false).doc("nonlinear least squares from the result on (Gauss-Newton)");
 }
 
-void read_method(const bodeflow::Parameters& p, Settings& s) {
+void read_method(const Parameters& p, Settings& s) {
   s.order = read_order(p.text("order"));
   s.highest_order = p.integer("highest_order");
   s.columns = p.text("columns") == "by_column" ? Columns::by_column : Columns::stacked;
@@ -83,7 +86,7 @@ void describe_prewarp(Describe& d) {
           "the middle of the range (geometric) to ten times that");
 }
 
-std::optional<double> read_prewarp(const bodeflow::Parameters& p) {
+std::optional<double> read_prewarp(const Parameters& p) {
   const std::string& text = p.text("prewarp");
   if (text == "auto") return {};
   const auto hertz = convert(text, "Hz"), angular = convert(text, "rad/s");

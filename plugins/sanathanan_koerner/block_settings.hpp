@@ -12,14 +12,15 @@ namespace bodeflow::sanathanan_koerner {
 
 /// inputs, outputs, band, weighting, tiers.
 void describe_selection(Describe& d);
-Selection read_selection(const bodeflow::Parameters& p);
+Selection read_selection(const Parameters& p);
+Weighting read_weighting(const Parameters& p);
 
 /// order, highest_order, columns, stability, iterations, tolerance, refine.
 void describe_method(Describe& d);
-void read_method(const bodeflow::Parameters& p, Settings& s);
+void read_method(const Parameters& p, Settings& s);
 
 /// prewarp: auto or a frequency.
 void describe_prewarp(Describe& d);
-std::optional<double> read_prewarp(const bodeflow::Parameters& p);
+std::optional<double> read_prewarp(const Parameters& p);
 
 }  // namespace bodeflow::sanathanan_koerner

@@ -26,10 +26,10 @@ struct Identification {
   Course course;
   std::optional<Course> refinement;
 
-  double cost = 0.0;                    ///< sum of |weight (g - model)|^2
-  Eigen::Index equations = 0;           ///< complex, of lines with a weight
-  Eigen::Index parameters = 0;          ///< real
-  std::optional<Parameters> fractions;  ///< values and names that the covariance is of; continuous time
+  double cost = 0.0;                            ///< sum of |weight (g - model)|^2
+  Eigen::Index equations = 0;                   ///< complex, of lines with a weight
+  Eigen::Index parameters = 0;                  ///< real
+  std::optional<FractionParameters> fractions;  ///< values and names that the covariance is of; continuous time
   std::optional<Uncertainty> uncertainty;
   std::string no_covariance;      ///< why there is none
   std::optional<OrderScan> scan;  ///< where the order was sought

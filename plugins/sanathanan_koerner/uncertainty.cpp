@@ -94,8 +94,8 @@ Expected<Uncertainty> uncertainty(const Data& data, const PartialFractions& m, d
   return u;
 }
 
-Parameters parameters_of(const PartialFractions& m) {
-  Parameters p;
+FractionParameters parameters_of(const PartialFractions& m) {
+  FractionParameters p;
   const Eigen::Index M = m.poles.order();
   p.values.resize(M + (M + 1) * m.channels());
   Eigen::Index at = 0;

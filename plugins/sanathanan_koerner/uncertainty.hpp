@@ -31,10 +31,10 @@ inline constexpr Eigen::Index kMostParameters = 150;
 Expected<Uncertainty> uncertainty(const Data& data, const PartialFractions& model, double variance);
 
 /// The real parameters of the model in the order of the covariance, with names such as "pole1_re", "residue1_im" and units.
-struct Parameters {
+struct FractionParameters {
   Eigen::VectorXd values;
   std::vector<std::string> names;
 };
-Parameters parameters_of(const PartialFractions& model);
+FractionParameters parameters_of(const PartialFractions& model);
 
 }  // namespace bodeflow::sanathanan_koerner

@@ -12,8 +12,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kDamping = 0.01;    // of the initial poles: their real part over their imaginary part
-constexpr double kLeastMean = 1e-8;  // of sigma at infinity beside its norm: below, the relaxed form has no zeros to give
+constexpr double kDamping = 0.01;     // of the initial poles: their real part over their imaginary part
+constexpr double kRestOfWay = 0.005;  // of the response's way, on either side of the active range
+constexpr double kLeastMean = 1e-8;   // of sigma at infinity beside its norm: below, the relaxed form has no zeros to give
 
 /// The functions of the poles with the shared weights, stacked, columns of unit length.
 struct Fractions {
@@ -118,6 +119,24 @@ PoleSet initial_poles(const Eigen::VectorXd& omega, Eigen::Index order, Spacing 
   return poles;
 }
 
+Eigen::Vector2d active_range(const Data& data) {
+  const Eigen::MatrixXcd g = weighted_residual(data, Eigen::MatrixXcd::Zero(data.lines(), data.channels()));
+  const Eigen::Index steps = data.lines() - 1;
+  const Eigen::VectorXd way = (g.bottomRows(steps) - g.topRows(steps)).rowwise().norm();
+  const double rest = kRestOfWay * way.sum();
+  Eigen::Index first = 0, last = data.lines() - 1;
+  for (double gone = 0.0; first < last; ++first) {
+    gone += way[first];
+    if (gone > rest) break;
+  }
+  for (double gone = 0.0; last > first; --last) {
+    gone += way[last - 1];
+    if (gone > rest) break;
+  }
+  return last > first ? Eigen::Vector2d(data.omega_rad_s[first], data.omega_rad_s[last])
+                      : Eigen::Vector2d(data.omega_rad_s[0], data.omega_rad_s[steps]);
+}
+
 Expected<PartialFractions> fit_residues(const Data& data, const PoleSet& poles) {
   if (auto good = check(data); !good) return unexpected(good.error().text);
   if (auto good = check_order(data, poles.order()); !good) return unexpected(good.error().text);
@@ -127,7 +146,7 @@ Expected<PartialFractions> fit_residues(const Data& data, const PoleSet& poles) 
 
 Expected<VectorFit> vector_fit(const Data& data, const VectorFittingSettings& settings) {
   if (auto good = check(data); !good) return unexpected(good.error().text);
-  return vector_fit(data, settings, initial_poles(data.omega_rad_s, settings.order, settings.initial_poles));
+  return vector_fit(data, settings, initial_poles(active_range(data), settings.order, settings.initial_poles));
 }
 
 Expected<VectorFit> vector_fit(const Data& data, const VectorFittingSettings& settings, const PoleSet& start) {
@@ -155,7 +174,9 @@ Expected<VectorFit> vector_fit(const Data& data, const VectorFittingSettings& se
       if (should_stop(course, settings.stop) || start.order() == 0) break;
     }
     Eigen::VectorXd sigma = relaxed_sigma(data, q, at, norm);
-    if (!(std::abs(sigma[start.order()]) > kLeastMean * sigma.norm())) sigma = plain_sigma(data, at);
+    // In units of the columns, whatever the unit of frequency.
+    const Eigen::VectorXd scaled = sigma.cwiseProduct(at.length);
+    if (!(std::abs(scaled[start.order()]) > kLeastMean * scaled.norm())) sigma = plain_sigma(data, at);
     auto next = relocated(now.poles, sigma, settings.stable);
     if (!next) return give_up(next.error().text);
     now = std::move(*next);

@@ -109,3 +109,15 @@ TEST_CASE("fit: the same data give the same bits") {
   CHECK(a->response == b->response);
   CHECK(a->poles == b->poles);
 }
+
+TEST_CASE("vector fitting: the unit of frequency changes nothing") {
+  const Data data = measured(5);
+  Data fast = data;
+  fast.omega_rad_s *= 0x1p36;
+  const auto slow = vector_fit(data, {5, Spacing::linear, true, {}}), quick = vector_fit(fast, {5, Spacing::linear, true, {}});
+  REQUIRE(slow);
+  REQUIRE(quick);
+  REQUIRE(slow->course.errors.size() == quick->course.errors.size());
+  for (std::size_t i = 0; i < slow->course.errors.size(); ++i)
+    CHECK(quick->course.errors[i] == Approx(slow->course.errors[i]).epsilon(1e-9));
+}

@@ -36,8 +36,8 @@ struct VectorFit {
 PoleSet initial_poles(const Eigen::VectorXd& omega_rad_s, Eigen::Index order, Spacing spacing);
 
 /// First and last frequency of the part of the range where the weighted response moves: all but 1/200 of the way that it travels
-/// from line to line lies between them on either side. Initial poles beyond it, where there are no modes, come back slowly (9
-/// iterations in place of 4 with that example, and more than 40 in place of 15 where it has noise).
+/// from line to line lies between them on either side. Initial poles beyond it, where there are no modes, come back slowly (8
+/// iterations in place of 3 with that example, and more than 40 in place of 15 where it has noise).
 Eigen::Vector2d active_range(const Data& data);
 
 /// The model in partial fractions of that order by relaxed vector fitting, in continuous time, the best of its iterates.

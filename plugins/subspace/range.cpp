@@ -12,7 +12,7 @@ namespace {
 
 using sanathanan_koerner::multiplied;
 
-constexpr Eigen::Index kBlock = 1000;  // lines that are worked through at once
+constexpr Eigen::Index kBlock = 1000;   // lines that are worked through at once
 constexpr double kOrthonormal = 1e-11;  // up to it, projections take the functions for orthonormal
 
 /// Columns q_j G for one input: function j and output o in column j outputs + o.

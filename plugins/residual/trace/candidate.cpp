@@ -319,11 +319,16 @@ void settle(const Against& against, Candidate& c) {
   FitProblem problem(model, against.bench.fit);
   problem.bound_base(c.with.fit.at);
   auto fitted = polish(problem, c.with.fit.at);
-  if (fitted) measure(against, std::move(*fitted), c);
+  if (!fitted) {
+    c.tried = false;
+    c.reason = "could not be fitted to the end: " + fitted.error().text;
+    return;
+  }
+  measure(against, std::move(*fitted), c);
   c.with.fit.polished = true;
 }
 
-void judge(const Levels& levels, bool first_effect, bool floor_known, Candidate& c) {
+void judge(const Levels& levels, bool share_counts, bool floor_known, Candidate& c) {
   c.accepted = false;
   if (!c.tried) return;
   const auto below = [](double limit) { return ", needed below " + short_number(limit, 2); };
@@ -340,7 +345,7 @@ void judge(const Levels& levels, bool first_effect, bool floor_known, Candidate&
                " deviations by blocks, needed above " + short_number(levels.z_block(), 2);
   } else if (!floor_known && !(is < (1.0 - kLeastFall) * was)) {
     c.reason = "lowers the error on the record that was not fitted by less than " + short_number(100.0 * kLeastFall, 2) + " %";
-  } else if (floor_known && !first_effect && !(c.added_share > kLeastShare)) {
+  } else if (floor_known && share_counts && !(c.added_share > kLeastShare)) {
     c.reason = "adds " + short_number(100.0 * c.added_share, 2) + " % to what is explained, needed above " +
                short_number(100.0 * kLeastShare, 2) + " %";
   } else {

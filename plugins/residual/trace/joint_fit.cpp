@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bodeflow/numerics/levenberg_marquardt.hpp>
+#include <cmath>
 #include <numeric>
 
 namespace bodeflow::residual {
@@ -11,6 +12,16 @@ constexpr numerics::LeastSquaresLimits kLimits{40, 1e-6};
 constexpr std::size_t kStarts = 2;
 constexpr int kSteps = 12;
 
+Eigen::VectorXd widening(const Fit& f) {
+  const Eigen::MatrixXd normal = pseudo_inverse_normal(f.jacobian);
+  const Eigen::MatrixXd by_row = (f.jacobian * normal).cwiseAbs2();
+  const Eigen::VectorXd misfit = by_row.transpose() * f.residual.cwiseAbs2(), noise = f.covariance.diagonal();
+  Eigen::VectorXd wider = Eigen::VectorXd::Ones(noise.size());
+  for (Eigen::Index i = 0; i < noise.size(); ++i)
+    if (noise[i] > 0.0) wider[i] = std::sqrt(std::max(misfit[i] / noise[i], 1.0));
+  return wider;
+}
+
 }  // namespace
 
 Eigen::VectorXd Fit::std(std::size_t record) const {
@@ -18,7 +29,7 @@ Eigen::VectorXd Fit::std(std::size_t record) const {
   Eigen::VectorXd s(slopes.size());
   for (Eigen::Index p = 0; p < s.size(); ++p) {
     const Eigen::Index i = layout.index(static_cast<std::size_t>(p), record);
-    s[p] = std::abs(slopes[p]) * std::sqrt(std::max(covariance(i, i), 0.0));
+    s[p] = std::abs(slopes[p]) * widening[i] * std::sqrt(std::max(covariance(i, i), 0.0));
   }
   return s;
 }
@@ -27,9 +38,10 @@ Eigen::MatrixXd Fit::value_covariance() const {
   const Eigen::VectorXd slopes = layout.slopes(values());
   Eigen::MatrixXd c(slopes.size(), slopes.size());
   for (Eigen::Index p = 0; p < c.rows(); ++p)
-    for (Eigen::Index q = 0; q < c.cols(); ++q)
-      c(p, q) = slopes[p] * slopes[q] *
-                covariance(layout.index(static_cast<std::size_t>(p), 0), layout.index(static_cast<std::size_t>(q), 0));
+    for (Eigen::Index q = 0; q < c.cols(); ++q) {
+      const Eigen::Index i = layout.index(static_cast<std::size_t>(p), 0), j = layout.index(static_cast<std::size_t>(q), 0);
+      c(p, q) = slopes[p] * slopes[q] * widening[i] * widening[j] * covariance(i, j);
+    }
   return c;
 }
 
@@ -41,6 +53,7 @@ Fit fit_at(const FitProblem& problem, const Approach& a) {
   f.residual = a.residual;
   f.jacobian = a.jacobian;
   f.covariance = pseudo_inverse_normal(a.jacobian);
+  f.widening = Eigen::VectorXd::Ones(a.at.size());
   f.chi2 = a.cost;
   const auto known = [](const auto& r) { return r->floor_known(); };
   if (!std::all_of(problem.records().begin(), problem.records().end(), known))
@@ -69,6 +82,7 @@ Expected<Fit> polish(const FitProblem& problem, const Eigen::VectorXd& coordinat
   if (end.at != found->parameters) end.jacobian = problem.jacobian(end.at, end.residual);
   if (!end.jacobian.allFinite() || !end.residual.allFinite()) return refused("the search ended at the border of the domain");
   Fit f = fit_at(problem, end);
+  f.widening = widening(f);
   f.converged = found->converged;
   f.polished = true;
   return f;

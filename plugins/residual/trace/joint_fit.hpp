@@ -13,7 +13,10 @@ struct Fit {
   Eigen::VectorXd at;          ///< coordinates
   Eigen::MatrixXd covariance;  ///< of them; without its part for a combination the data leave free.
                                ///< Where a floor is unknown what is left counts as white noise.
-  Eigen::VectorXd residual;    ///< of the records below each other
+  /// By how much deviations of coordinates are wider than `covariance` says, 1 or more: where the law differs from the plant's,
+  /// what is left is more than noise at the rows that determine them.
+  Eigen::VectorXd widening;
+  Eigen::VectorXd residual;  ///< of the records below each other
   Eigen::MatrixXd jacobian;
   double chi2 = 0.0;
   bool converged = false;
@@ -29,7 +32,9 @@ struct Fit {
 /// The fit that a quick search has reached, its Jacobian as it stands.
 Fit fit_at(const FitProblem& problem, const Approach& a);
 
-/// The optimum near there. Method: Levenberg-Marquardt, derivatives by differences.
+/// The optimum near there. Method: Levenberg-Marquardt, derivatives by differences. Deviations are the larger of those of the
+/// noise and of (J^T J)^-1 J^T diag(r^2) J (J^T J)^-1, which holds for models that are not quite right (H. White, Maximum
+/// likelihood estimation of misspecified models, Econometrica 50 (1982) 1).
 Expected<Fit> polish(const FitProblem& problem, const Eigen::VectorXd& coordinates);
 
 /// The least-squares fit (maximum likelihood where the residuals are whitened noise) from the best of some starts, given as

@@ -19,6 +19,9 @@ constexpr std::size_t kMostSettled = 6;
 // One that chance would do once in so many times its level may be a finding once it is fitted to the end.
 constexpr double kNearLevel = 100.0;
 
+// Deviations of chi2 by chance.
+constexpr double kStandsOut = 10.0;
+
 class Searcher {
  public:
   Searcher(const std::vector<Eigen::VectorXd>& base_starts, const Catalogue& catalogue, const Bench& bench,
@@ -83,10 +86,22 @@ class Searcher {
     step.levels = out_.levels;
     go_on_with_rivals(against, step);
     settle_rivals(against, step);
-    for (Candidate& c : step.candidates) judge(step.levels, first, floor_known_, c);
+    const bool share_counts = !first || stands_out();
+    for (Candidate& c : step.candidates) judge(step.levels, share_counts, floor_known_, c);
     rank(step.candidates);
+    while (!step.candidates.empty() && step.candidates.front().accepted && !step.candidates.front().with.fit.polished) {
+      settle(against, step.candidates.front());
+      judge(step.levels, share_counts, floor_known_, step.candidates.front());
+      rank(step.candidates);
+    }
     judge_leaders(step);
     return step;
+  }
+
+  /// What the base model leaves of the selecting record is so much more than noise that shares of it mean something.
+  bool stands_out() const {
+    const Eigen::VectorXd& left = out_.base.select.residual;
+    return bench_.select->gain(left, left).excess_before > kStandsOut * std::sqrt(2.0 * static_cast<double>(left.size()));
   }
 
   static void rank(std::vector<Candidate>& candidates) {

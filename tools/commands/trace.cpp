@@ -44,6 +44,11 @@ struct Refused {
 
 std::string with_family(const std::string& id) { return id.find('.') == std::string::npos ? "residual." + id : id; }
 
+/// What a base model takes as a black box.
+std::string black_box_type(const std::string& model) {
+  return with_family(model) == "residual.frequency_response" ? "frequency_response" : "model";
+}
+
 std::string listed(const std::vector<std::string>& words) {
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
@@ -161,7 +166,7 @@ std::string graph_of(const TraceCommand& command, const std::vector<TraceFile>& 
         "  - {0}.input -> {0}_record.input\n  - {0}.output -> {0}_record.output\n  - {0}_record -> trace.{1}\n", name, file.role);
   }
   if (!command.black_box.empty()) {
-    blocks += fmt::format("  black_box: {{block: acquisition.result, type: model, file: {}}}\n",
+    blocks += fmt::format("  black_box: {{block: acquisition.result, type: {}, file: {}}}\n", black_box_type(command.model),
                           yaml_text(fs::absolute(command.black_box).lexically_normal().string()));
     connections += "  - black_box -> trace.model\n";
   }

@@ -35,17 +35,21 @@ void print_wrapped(const std::string& text, std::size_t indent) {
 
 void print_records(const Json& record) {
   const Values levels = values(record, "record_levels");
+  if (levels.data.empty()) return;
   std::string list;
   for (std::size_t i = 0; i < levels.data.size(); ++i)
-    list +=
-        fmt::format("{}{} {:.3g} {}", i == 0 ? "" : ", ", text_at(attribute(record, "records"), i), levels.at(i), levels.unit);
-  if (list.empty()) return;
+    if (levels.at(i) > 0.0)  // responses have none
+      list += fmt::format("{}{} {:.3g} {}", list.empty() ? "; input rms: " : ", ", text_at(attribute(record, "records"), i),
+                          levels.at(i), levels.unit);
   const std::int64_t periods =
       attribute(record, "periods").is_number_integer() ? attribute(record, "periods").get<std::int64_t>() : 0;
   print_wrapped(
-      fmt::format("measured: {} from {}{}; input rms: {}", text(attribute(record, "output_name")),
-                  text(attribute(record, "input_name")), periods > 0 ? fmt::format(", {} periods each", periods) : "", list),
+      fmt::format("measured: {} from {}{}{}", text(attribute(record, "output_name")), text(attribute(record, "input_name")),
+                  periods > 0 ? fmt::format(", {} periods each", periods) : "", list),
       2);
+  const Json& notes = attribute(record, "record_notes");
+  if (notes.is_array())
+    for (std::size_t i = 0; i < notes.size(); ++i) print_wrapped(text_at(notes, i), 2);
 }
 
 /// "dead_time and offset": what was added to the model.

@@ -132,7 +132,7 @@ TEST_CASE("compare says what is missing or no model") {
   folder.write("bench.csv", bench_csv({300, 1, 0.1, 1.0, 0}));
   folder.write("model.json", exact_model(1.0));
   CHECK(holds(refusal(folder, {"compare", "model.json"}, 2), "one model alone: give another one"));
-  CHECK(holds(refusal(folder, {"compare", "model.json", "nowhere"}, 3), "nowhere: no such run directory or result.json"));
+  CHECK(holds(refusal(folder, {"compare", "model.json", "nowhere"}, 3), "nowhere: no such file, run directory or result.json"));
   CHECK(holds(refusal(folder, {"compare", "model.json", "model.json", "--steps", "3"}, 2), "belong to --data"));
   CHECK(holds(refusal(folder, {"compare", "model.json", "--data", "bench.csv"}, 3),
               "--input is missing: which column is the input?"));

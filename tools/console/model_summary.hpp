@@ -13,6 +13,8 @@ bool print_model(const nlohmann::ordered_json& record);
 bool print_derived_parameters(const nlohmann::ordered_json& record);
 /// The fits of each model, then parameters and poles side by side.
 bool print_comparison(const nlohmann::ordered_json& record);
+/// The verdict on a change, bands and resonances.
+bool print_change(const nlohmann::ordered_json& record);
 /// Mean and spread beside truth and published figures.
 bool print_monte_carlo(const nlohmann::ordered_json& record);
 

@@ -166,6 +166,7 @@ void print_record(const std::string& name, const Json& record) {
   if (type == "model" && print_model(record)) return;
   if (type == "parameters" && print_derived_parameters(record)) return;
   if (type == "comparison" && print_comparison(record)) return;
+  if (type == "change" && print_change(record)) return;
   if (type == "monte_carlo" && print_monte_carlo(record)) return;
   if (type == "trace" && print_trace(record)) return;
   if (type == "reveal" && print_reveal(record)) return;

@@ -29,6 +29,7 @@ std::string kind_of(const std::string& type) {
                                                          {"reveal", "verdict and truth"},
                                                          {"sweep", "sweep"},
                                                          {"comparison", "comparison of models"},
+                                                         {"change", "change of a response"},
                                                          {"order_scan", "order scan"},
                                                          {"noise_variances", "noise variances"},
                                                          {"whiteness", "whiteness of the residual"},
@@ -47,6 +48,7 @@ bool add_by_type(Page& page, const Record& record, std::span<const Response> res
   if (record.type == "monte_carlo") return add_monte_carlo(page, record);
   if (record.type == "noise_variances") return add_noise_variances(page, record);
   if (record.type == "comparison") return add_comparison(page, record);
+  if (record.type == "change") return add_change(page, record);
   if (record.type == "order_scan") return add_order_scan(page, record);
   if (record.type == "whiteness") return add_whiteness(page, record);
   if (record.type == "residual") return add_residual(page, record);

@@ -21,6 +21,8 @@ bool add_monte_carlo(Page& page, const Record& record);
 bool add_noise_variances(Page& page, const Record& record);
 /// Fits, signals, correlations, parameters and responses of models side by side.
 bool add_comparison(Page& page, const Record& record);
+/// Whether a plant has changed between two responses: spectrum, bands, resonances.
+bool add_change(Page& page, const Record& record);
 bool add_order_scan(Page& page, const Record& record);
 /// The power of a residual by bands.
 bool add_whiteness(Page& page, const Record& record);

@@ -272,6 +272,20 @@ TEST_CASE("periodic: the noise of a measured input counts at the excited lines")
   CHECK(sum == Approx(1.0).margin(0.06));
 }
 
+TEST_CASE("periodic: the noise of a measured input counts at the mean, which drives the model too") {
+  const Clean clean;
+  double sum = 0.0;
+  constexpr int kRuns = 60;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    records::Recording r = clean.noisy(0.001, 200 + seed);
+    r.input.col(0) += noise(r.samples(), 1.0, 0.0, 300 + seed);
+    const auto m = measured(r, *clean.base);
+    const Eigen::VectorXd left = m->residual(clean.model, mass_values());
+    sum += left[0] * left[0] / kRuns;
+  }
+  CHECK(sum == Approx(1.0).margin(0.6));  // three deviations; without its part it is far above
+}
+
 TEST_CASE("periodic: the response is that of the plant behind its hold, with the scatter it states") {
   const Clean clean;
   auto late = mass();

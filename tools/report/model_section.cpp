@@ -108,10 +108,9 @@ void add_roots(Page& page, const Record& record, bool poles) {
 }
 
 /// |G - model| over the radius of the confidence region, line by line.
-Series residual(const Response& response, const Model& model, std::size_t i, std::size_t j) {
+Series residual(const Response& response, const std::vector<std::complex<double>>& fitted, std::size_t i, std::size_t j) {
   Series series;
   series.x = response.frequency;
-  const auto fitted = model.response(response.frequency, i, j);
   for (std::size_t k = 0; k < response.lines(); ++k) {
     const double ratio = std::abs(response.value(k, i, j) - fitted[k]) / response.radius(k, i, j);
     series.y.push_back(std::isfinite(ratio) && ratio > 0.0 ? ratio : kNaN);
@@ -121,6 +120,7 @@ Series residual(const Response& response, const Model& model, std::size_t i, std
 
 void add_residuals(Page& page, const Response& response, const Model& model) {
   std::vector<Chart> charts;
+  const auto fitted = model.responses(response.frequency);
   Table table{"Residuals",
               {{"Output / input", false},
                {"Lines outside the region"},
@@ -130,7 +130,7 @@ void add_residuals(Page& page, const Response& response, const Model& model) {
               {}};
   for (std::size_t i = 0; i < response.outputs; ++i)
     for (std::size_t j = 0; j < response.inputs && charts.size() < kMostPairs; ++j) {
-      Series series = residual(response, model, i, j);
+      Series series = residual(response, fitted[i * model.inputs + j], i, j);
       std::size_t known = 0, outside = 0;
       double largest = kNaN;
       for (std::size_t k = 0; k < series.y.size(); ++k) {
@@ -204,7 +204,8 @@ void add_own_response(Page& page, const Record& record, const Model& model) {
   Series magnitude, phase;
   magnitude.x = phase.x = frequency;
   std::vector<double> degrees;
-  for (const auto& g : model.response(frequency, 0, 0)) {
+  const auto responses = model.responses(frequency);
+  for (const auto& g : responses[0]) {
     magnitude.y.push_back(std::abs(g) > 0.0 ? decibel(std::abs(g)) : kNaN);
     degrees.push_back(std::arg(g) * 180.0 / std::numbers::pi);
   }

@@ -61,17 +61,23 @@ std::vector<double> model_frequencies(const Response& response, bool logarithmic
   return frequency;
 }
 
+/// A model's values at the frequencies at which it is drawn.
+struct Drawn {
+  const Model* model = nullptr;
+  std::vector<double> frequency;
+  std::vector<std::vector<std::complex<double>>> values;  ///< as Model::responses gives them
+};
+
 /// The model's curves; its phase is moved by whole turns to where the data lie.
-BodeCurve model_curve(const Model& model, const Response& response, std::size_t i, std::size_t j, const BodeCurve& data,
-                      bool logarithmic) {
+BodeCurve model_curve(const Drawn& drawn, std::size_t i, std::size_t j, const BodeCurve& data) {
   BodeCurve curve;
   for (Series* series : {&curve.magnitude, &curve.phase}) {
-    series->x = model_frequencies(response, logarithmic);
+    series->x = drawn.frequency;
     series->model = true;
   }
   std::vector<bool> trusted;
   std::vector<double> phase;
-  for (const auto& g : model.response(curve.magnitude.x, i, j)) {
+  for (const auto& g : drawn.values[i * drawn.model->inputs + j]) {
     curve.magnitude.y.push_back(std::abs(g) > 0.0 ? decibel(std::abs(g)) : kNaN);
     phase.push_back(std::abs(g) > 0.0 ? std::arg(g) * kDegrees : kNaN);
     trusted.push_back(true);
@@ -89,7 +95,7 @@ BodeCurve model_curve(const Model& model, const Response& response, std::size_t 
   return curve;
 }
 
-Chart bode_chart(const Response& response, std::size_t j, const std::vector<std::size_t>& outputs, const Model* model) {
+Chart bode_chart(const Response& response, std::size_t j, const std::vector<std::size_t>& outputs, const Drawn* model) {
   Chart chart;
   const bool logarithmic = is_logarithmic(response.frequency);
   chart.x_logarithmic = logarithmic;
@@ -113,7 +119,7 @@ Chart bode_chart(const Response& response, std::size_t j, const std::vector<std:
     magnitude.series.push_back(curve.magnitude);
     phase.series.push_back(curve.phase);
     if (model == nullptr) continue;
-    BodeCurve fitted = model_curve(*model, response, outputs[n], j, curve, logarithmic);
+    BodeCurve fitted = model_curve(*model, outputs[n], j, curve);
     fitted.magnitude.colour = fitted.phase.colour = outputs.size() == 1 ? 1 : static_cast<int>(n);
     fitted.magnitude.name = outputs.size() == 1 ? "model" : "model of " + response.output(outputs[n]);
     magnitude.series.push_back(fitted.magnitude);
@@ -175,11 +181,16 @@ BodeCurve bode_curve(const Response& response, std::size_t i, std::size_t j) {
 
 std::vector<Chart> bode_charts(const Response& response, const Model* model) {
   std::vector<Chart> charts;
+  Drawn drawn{model, {}, {}};
+  if (model != nullptr) {
+    drawn.frequency = model_frequencies(response, is_logarithmic(response.frequency));
+    drawn.values = model->responses(drawn.frequency);
+  }
   for (std::size_t j = 0; j < response.inputs; ++j)
     for (std::size_t first = 0; first < response.outputs && j * response.outputs + first < kMostPairs; first += kOutputsInOne) {
       std::vector<std::size_t> outputs;
       for (std::size_t i = first; i < std::min(first + kOutputsInOne, response.outputs); ++i) outputs.push_back(i);
-      Chart chart = bode_chart(response, j, outputs, model);
+      Chart chart = bode_chart(response, j, outputs, model != nullptr ? &drawn : nullptr);
       std::string names;
       for (const std::size_t i : outputs) names += (names.empty() ? "" : ", ") + response.output(i);
       chart.title = fmt::format("{} to {}{}", response.input(j), names, model != nullptr ? ": model and data" : "");

@@ -13,7 +13,9 @@ namespace {
 
 using Shape = std::vector<std::uint64_t>;
 
-constexpr std::size_t kMostStates = 200;  ///< beyond, a curve takes longer than it tells
+constexpr std::size_t kMostStates = 600;  ///< beyond, a curve takes longer than it tells
+constexpr std::size_t kMostRoots = 200;   ///< of a polynomial; beyond, rounding decides where they lie
+constexpr Eigen::Index kManyStates = 30;  ///< above, one Hessenberg form for all lines costs less than a factorisation a line
 
 Eigen::VectorXd vector_of(const Array& array, std::size_t from, std::size_t count) {
   return Eigen::Map<const Eigen::VectorXd>(array.re.data() + from, static_cast<Eigen::Index>(count));
@@ -93,6 +95,41 @@ std::optional<Eigen::VectorXcd> held_response(const numerics::TransferFunction& 
   return values;
 }
 
+void delayed(std::vector<std::complex<double>>& values, const std::vector<double>& frequency, double delay) {
+  if (delay == 0.0) return;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] *= std::polar(1.0, -2.0 * std::numbers::pi * frequency[k] * delay);
+}
+
+std::vector<std::vector<std::complex<double>>> rational_responses(const Model& model, const Eigen::VectorXd& lines) {
+  const std::vector<double> frequency(lines.begin(), lines.end());
+  std::vector<std::vector<std::complex<double>>> values;
+  for (std::size_t i = 0; i < model.outputs; ++i)
+    for (std::size_t j = 0; j < model.inputs; ++j) {
+      const numerics::TransferFunction system{polynomial_of(*model.record->array("numerator"), i, j),
+                                              polynomial_of(*model.record->array("denominator"), i, j), model.sample_time};
+      const auto held = model.hold > 0.0 ? held_response(system, model.hold, std::max(model.delay, 0.0), lines) : std::nullopt;
+      const Eigen::VectorXcd curve = held ? *held : numerics::frequency_response(system, lines);
+      values.emplace_back(curve.begin(), curve.end());
+      if (!held) delayed(values.back(), frequency, model.delay);
+    }
+  return values;
+}
+
+std::vector<std::vector<std::complex<double>>> state_space_responses(const Record& record, double sample_time,
+                                                                     const Eigen::VectorXd& lines) {
+  const numerics::StateSpace system{matrix_of(*record.array("A")), matrix_of(*record.array("B")), matrix_of(*record.array("C")),
+                                    matrix_of(*record.array("D")), sample_time};
+  const auto curve =
+      system.states() > kManyStates ? numerics::hessenberg_response(system, lines) : numerics::frequency_response(system, lines);
+  std::vector<std::vector<std::complex<double>>> values;
+  for (Eigen::Index i = 0; i < system.D.rows(); ++i)
+    for (Eigen::Index j = 0; j < system.D.cols(); ++j) {
+      auto& channel = values.emplace_back();
+      for (const Eigen::MatrixXcd& at_line : curve) channel.push_back(at_line(i, j));
+    }
+  return values;
+}
+
 }  // namespace
 
 std::optional<Model> read_model(const Record& record) {
@@ -113,27 +150,11 @@ std::optional<Model> read_model(const Record& record) {
   return model;
 }
 
-std::vector<std::complex<double>> Model::response(const std::vector<double>& frequency, std::size_t i, std::size_t j) const {
+std::vector<std::vector<std::complex<double>>> Model::responses(const std::vector<double>& frequency) const {
   const Eigen::VectorXd lines = Eigen::Map<const Eigen::VectorXd>(frequency.data(), static_cast<Eigen::Index>(frequency.size()));
-  std::vector<std::complex<double>> values(frequency.size());
-  if (is_rational(*record)) {
-    const numerics::TransferFunction system{polynomial_of(*record->array("numerator"), i, j),
-                                            polynomial_of(*record->array("denominator"), i, j), sample_time};
-    const auto held = hold > 0.0 ? held_response(system, hold, std::max(delay, 0.0), lines) : std::nullopt;
-    const Eigen::VectorXcd curve = held ? *held : numerics::frequency_response(system, lines);
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = curve[static_cast<Eigen::Index>(k)];
-    if (held) return values;
-  } else {
-    const Eigen::MatrixXd B = matrix_of(*record->array("B")), C = matrix_of(*record->array("C")),
-                          D = matrix_of(*record->array("D"));
-    const auto column = static_cast<Eigen::Index>(j), row = static_cast<Eigen::Index>(i);
-    const numerics::StateSpace system{matrix_of(*record->array("A")), B.col(column), C.row(row), D.block(row, column, 1, 1),
-                                      sample_time};
-    const auto curve = numerics::frequency_response(system, lines);
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = curve[k](0, 0);
-  }
-  if (delay != 0.0)
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] *= std::polar(1.0, -2.0 * std::numbers::pi * frequency[k] * delay);
+  if (is_rational(*record)) return rational_responses(*this, lines);
+  auto values = state_space_responses(*record, sample_time, lines);
+  for (auto& channel : values) delayed(channel, frequency, delay);
   return values;
 }
 
@@ -147,7 +168,7 @@ std::vector<Root> roots_of(const Record& record, bool poles) {
   const auto model = read_model(record);
   if (!model || model->outputs * model->inputs != 1 || !is_rational(record)) return roots;
   const Array& polynomial = *record.array(poles ? "denominator" : "numerator");
-  if (polynomial.size() > kMostStates) return roots;
+  if (polynomial.size() > kMostRoots) return roots;
   if (const auto found = numerics::roots(numerics::trimmed(polynomial_of(polynomial, 0, 0))))
     for (const auto& root : *found) roots.push_back({root, false, 0.0, 0.0, 0.0});
   return roots;

@@ -23,8 +23,8 @@ struct Model {
   double delay = 0.0;
   double hold = 0.0;  ///< time over which the input was held, 0: not
 
-  /// G of output i and input j at each frequency [Hz].
-  std::vector<std::complex<double>> response(const std::vector<double>& frequency, std::size_t i, std::size_t j) const;
+  /// G at each frequency [Hz], of output i and input j at place i * inputs + j; a state space is evaluated once for all of them.
+  std::vector<std::vector<std::complex<double>>> responses(const std::vector<double>& frequency) const;
 };
 
 /// Nothing for another record, another form, or arrays that do not fit each other.

@@ -31,11 +31,11 @@ std::size_t count(const std::string& text, const std::string& word) {
 TEST_CASE("report model: a transfer function is evaluated over frequency, its delay included") {
   Record record = second_order();
   const double f = 10.0 / (2.0 * std::numbers::pi);  // s = 10 i: G = 100 / (20 i)
-  auto value = read_model(record)->response({f}, 0, 0)[0];
+  auto value = read_model(record)->responses({f})[0][0];
   CHECK(value.real() == Approx(0.0).margin(1e-12));
   CHECK(value.imag() == Approx(-5.0));
   record.attributes["delay"] = std::numbers::pi / 20.0;  // a quarter turn more at 10 rad/s
-  value = read_model(record)->response({f}, 0, 0)[0];
+  value = read_model(record)->responses({f})[0][0];
   CHECK(value.real() == Approx(-5.0));
 }
 
@@ -49,8 +49,39 @@ TEST_CASE("report model: the same plant in states gives the same curve") {
                    {"D", {"", {1, 1}, {0.0}, {}}}};
   const Record transfer = second_order();
   const std::vector<double> frequency{0.1, 1.0, 1.6, 5.0};
-  const auto a = read_model(transfer)->response(frequency, 0, 0), b = read_model(states)->response(frequency, 0, 0);
+  const auto a = read_model(transfer)->responses(frequency)[0], b = read_model(states)->responses(frequency)[0];
   for (std::size_t k = 0; k < frequency.size(); ++k) CHECK(std::abs(a[k] - b[k]) < 1e-12);
+}
+
+TEST_CASE("report model: many states of several inputs and outputs give each entry its own response") {
+  // State n decays with n + 1 and goes from input n % 2 to output n / 2 % 3.
+  const std::size_t states = 40;
+  const double delay = 0.01;
+  Record record;
+  record.type = "model";
+  record.attributes = {{"form", "state_space"}, {"delay", delay}};
+  std::vector<double> A(states * states), B(states * 2), C(3 * states);
+  for (std::size_t n = 0; n < states; ++n) {
+    A[n * states + n] = -(static_cast<double>(n) + 1.0);
+    B[n * 2 + n % 2] = 1.0;
+    C[n / 2 % 3 * states + n] = 1.0;
+  }
+  record.arrays = {{"A", {"", {states, states}, A, {}}},
+                   {"B", {"", {states, 2}, B, {}}},
+                   {"C", {"", {3, states}, C, {}}},
+                   {"D", {"", {3, 2}, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {}}}};
+  const std::vector<double> frequency{0.1, 1.0, 7.0};
+  const auto found = read_model(record)->responses(frequency);
+  REQUIRE(found.size() == 6);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 2; ++j)
+      for (std::size_t k = 0; k < frequency.size(); ++k) {
+        const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequency[k]);
+        std::complex<double> expected = 1.0 + static_cast<double>(i * 2 + j);
+        for (std::size_t n = 0; n < states; ++n)
+          if (n % 2 == j && n / 2 % 3 == i) expected += 1.0 / (s + static_cast<double>(n) + 1.0);
+        CHECK(std::abs(found[i * 2 + j][k] - expected * std::exp(-s * delay)) < 1e-11);
+      }
 }
 
 TEST_CASE("report model: a model fitted to samples of a held input is drawn as these samples see it") {
@@ -64,10 +95,10 @@ TEST_CASE("report model: a model fitted to samples of a held input is drawn as t
   record.arrays = {{"numerator", {"", {1}, {3.0 * a}, {}}}, {"denominator", {"", {2}, {1.0, a}, {}}}};
   const std::complex<double> z = std::polar(1.0, 2.0 * std::numbers::pi * f * h);
   const std::complex<double> expected = 3.0 * ((1.0 - d) / z + (d - c) / (z * z)) / (z - c);
-  CHECK(std::abs(read_model(record)->response({f}, 0, 0)[0] - expected) < 1e-12);
+  CHECK(std::abs(read_model(record)->responses({f})[0][0] - expected) < 1e-12);
   record.attributes["hold"] = "none";
   const std::complex<double> s(0.0, 2.0 * std::numbers::pi * f);
-  CHECK(std::abs(read_model(record)->response({f}, 0, 0)[0] - 3.0 * a / (s + a) * std::exp(-1.5 * h * s)) < 1e-12);
+  CHECK(std::abs(read_model(record)->responses({f})[0][0] - 3.0 * a / (s + a) * std::exp(-1.5 * h * s)) < 1e-12);
 }
 
 TEST_CASE("report model: arrays that don't fit each other can't be evaluated") {

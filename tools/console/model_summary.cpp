@@ -32,6 +32,21 @@ void print_model_heading(const Json& record) {
   fmt::print("  {}\n", heading);
 }
 
+/// What a fit to a response leaves, where the method tells it.
+void print_fit(const Json& record) {
+  const double relative = number(attribute(record, "relative_error")), rms = number(attribute(record, "rms_error")),
+               largest = number(attribute(record, "max_error"));
+  if (!std::isfinite(relative)) return;
+  std::string line = fmt::format("leaves {:.3g} % of the weighted response", 100.0 * relative);
+  if (std::isfinite(rms) && std::isfinite(largest)) line += fmt::format("; rms error {:.3g}, largest {:.3g}", rms, largest);
+  const double states = number(attribute(record, "states")), before = number(attribute(record, "states_before"));
+  if (std::isfinite(states)) line += fmt::format("; {:.0f} states", states);
+  if (std::isfinite(before)) line += fmt::format(" of {:.0f}", before);
+  const double gap = number(attribute(record, "hankel_gap"));
+  if (std::isfinite(gap)) line += fmt::format(", the next Hankel singular value is {:.3g} times smaller", gap);
+  fmt::print("  {}\n", line);
+}
+
 void print_parameters(const Json& record, const Values& parameters) {
   const Values covariance = values(record, "covariance");
   const std::size_t count = parameters.data.size();
@@ -114,6 +129,7 @@ bool print_model(const Json& record) {
   const auto poles = complex_values(record, "poles");
   if (parameters.empty() && poles.empty()) return false;
   print_model_heading(record);
+  print_fit(record);
   if (!parameters.empty()) print_parameters(record, parameters);
   print_poles(record);
   print_cost(record);

@@ -19,7 +19,8 @@ std::string data_of(const std::string& graph) {
       {"bench_distortion.yaml", "motorbench_two_mass/multisine_B.csv"},
       {"measured_frequency_response.yaml", "motorbench_two_mass/multisine_A.csv"},
       {"fine_steering_mirror.yaml", "fine_steering_mirror/fsm_300mV_train.csv"},
-      {"silverbox.yaml", "silverbox/SNLS80mV.csv"}};
+      {"silverbox.yaml", "silverbox/SNLS80mV.csv"},
+      {"example_4.yaml", "loudspeaker_impedance/L16RNX_0g.csv"}};
   const auto found = files.find(graph);
   return found == files.end() ? "" : found->second;
 }
@@ -29,21 +30,18 @@ fs::path shared_data() {
   return given != nullptr ? fs::path(given) : fs::path(BODEFLOW_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
-std::vector<fs::path> graphs() {
+std::vector<fs::path> graphs(std::initializer_list<const char*> folders) {
   std::vector<fs::path> found;
-  for (const char* folder : {"first_steps", "measuring", "drive"})
+  for (const char* folder : folders)
     for (const auto& entry : fs::directory_iterator(fs::path(BODEFLOW_SOURCE_DIR) / "graphs" / folder))
       if (entry.path().extension() == ".yaml") found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
 }
 
-}  // namespace
-
-TEST_CASE(
-    "every graph of first_steps, measuring and drive runs as it stands, to the same bits for any chunk and thread count, with a "
-    "report") {
-  for (const fs::path& graph : graphs()) {
+/// Runs each as it stands, twice, with other chunks and threads.
+void check_graphs(std::initializer_list<const char*> folders) {
+  for (const fs::path& graph : graphs(folders)) {
     std::vector<std::string> command{"run", graph.string()};
     if (const std::string data = data_of(graph.filename().string()); !data.empty()) {
       const fs::path file = shared_data() / data;
@@ -68,4 +66,16 @@ TEST_CASE(
     CHECK_FALSE(hashes.empty());
     CHECK(run("b", "61", "2") == hashes);
   }
+}
+
+}  // namespace
+
+TEST_CASE(
+    "every graph of first_steps, measuring, drive and akcay_1999 runs as it stands, to the same bits for any chunk and thread "
+    "count, with a report") {
+  check_graphs({"first_steps", "measuring", "drive", "akcay_1999"});
+}
+
+TEST_CASE("every graph of jue_1998 runs as it stands, to the same bits for any chunk and thread count, with a report", "[long]") {
+  check_graphs({"jue_1998"});
 }

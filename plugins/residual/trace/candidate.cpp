@@ -282,7 +282,8 @@ Candidate try_effect(const Addition& addition, const Against& against) {
 }
 
 void carry_over(const Against& against, Candidate& c) {
-  if (!c.tried) return;
+  if (!c.tried || !c.on_parts) return;
+  c.on_parts = false;
   const JointModel model = c.with.fit.model;
   const auto own = static_cast<Eigen::Index>(c.addition.parameters.size());
   FitProblem problem(model, against.bench.fit, static_cast<Eigen::Index>(model.parameters().size()) - own);

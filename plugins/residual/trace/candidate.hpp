@@ -42,6 +42,7 @@ struct Candidate {
   Addition addition;
   std::string label;
   bool tried = false;       ///< it could be fitted
+  bool on_parts = false;    ///< fitted to parts of the records only, see carry_over
   bool approached = false;  ///< the search ended where nothing more was promised
   Examined with;            ///< the model with it
   Null null;
@@ -75,7 +76,7 @@ struct Against {
 /// The candidate after a quick search from its starts, numbers filled in and not judged. Near the noise one that chance makes as
 /// good more than once in twenty times is not searched: its gain is that of the linear look.
 Candidate try_effect(const Addition& addition, const Against& against);
-/// Takes a candidate that was tried on parts of the fitted records to the whole ones, with a few more steps.
+/// Takes a candidate that was tried on parts of the fitted records to the whole ones, with a few more steps; leaves others.
 void carry_over(const Against& against, Candidate& c);
 /// Goes on with a promising one.
 void go_on(const Against& against, Candidate& c);

@@ -16,6 +16,8 @@ constexpr double kRival = 0.5, kNearRival = 0.8;
 // One that has gained so much of it after a few steps may still overtake.
 constexpr double kPromising = 0.2;
 constexpr std::size_t kMostSettled = 6;
+// One that was fitted to parts of the records only, and lowers the error by less than this part of what it has to, is left there.
+constexpr double kHalfwayThere = 0.5;
 // One that chance would do once in so many times its level may be a finding once it is fitted to the end.
 constexpr double kNearLevel = 100.0;
 
@@ -77,25 +79,49 @@ class Searcher {
       if (excerpt) {
         const Against part{excerpt->bench, excerpt->before, against.original_select, base_starts_, near};
         step.candidates.push_back(try_effect(b.addition, part));
-        carry_over(against, step.candidates.back());
+        step.candidates.back().on_parts = step.candidates.back().tried;
       } else {
         step.candidates.push_back(try_effect(b.addition, against));
       }
     }
     if (priced) out_.levels.candidates += step.candidates.size();
     step.levels = out_.levels;
-    go_on_with_rivals(against, step);
-    settle_rivals(against, step);
     const bool share_counts = !first || stands_out();
-    for (Candidate& c : step.candidates) judge(step.levels, share_counts, floor_known_, c);
-    rank(step.candidates);
-    while (!step.candidates.empty() && step.candidates.front().accepted && !step.candidates.front().with.fit.polished) {
-      settle(against, step.candidates.front());
-      judge(step.levels, share_counts, floor_known_, step.candidates.front());
-      rank(step.candidates);
+    carry_over_best(against, kPromising, step);
+    settle_and_judge(against, share_counts, step);
+    const auto none = [&step] { return step.candidates.empty() || !step.candidates.front().accepted; };
+    if (excerpt && none()) {
+      carry_over_best(against, 0.0, step);
+      settle_and_judge(against, share_counts, step);
     }
     judge_leaders(step);
     return step;
+  }
+
+  /// Takes those that were fitted to parts of the records to the whole ones: what gains at least that part of the best on the
+  /// selecting record, and lowers the error there by a good part of what it has to. The others keep what the parts say of them.
+  static void carry_over_best(const Against& against, double part, Step& step) {
+    double most = 0.0;
+    for (const Candidate& c : step.candidates)
+      if (c.tried) most = std::max(most, c.merit());
+    for (Candidate& c : step.candidates) {
+      const double was = std::sqrt(c.select_gain.excess_before), is = std::sqrt(c.select_gain.excess_after);
+      if (c.on_parts && c.merit() >= part * most && is < (1.0 - kHalfwayThere * kLeastFall) * was) carry_over(against, c);
+    }
+  }
+
+  void settle_and_judge(const Against& against, bool share_counts, Step& step) const {
+    auto& all = step.candidates;
+    go_on_with_rivals(against, step);
+    settle_rivals(against, step);
+    for (Candidate& c : all) judge(step.levels, share_counts, floor_known_, c);
+    rank(all);
+    while (!all.empty() && all.front().accepted && !all.front().with.fit.polished) {
+      carry_over(against, all.front());
+      settle(against, all.front());
+      judge(step.levels, share_counts, floor_known_, all.front());
+      rank(all);
+    }
   }
 
   /// What the base model leaves of the selecting record is so much more than noise that shares of it mean something.
@@ -114,9 +140,10 @@ class Searcher {
 
   static void go_on_with_rivals(const Against& against, Step& step) {
     double most = 0.0;
-    for (const Candidate& c : step.candidates) most = std::max(most, c.fit_gain);
+    for (const Candidate& c : step.candidates)
+      if (!c.on_parts) most = std::max(most, c.fit_gain);
     for (Candidate& c : step.candidates)
-      if (c.fit_gain > kPromising * most && c.p < kNearLevel * step.levels.p_candidate()) go_on(against, c);
+      if (!c.on_parts && c.fit_gain > kPromising * most && c.p < kNearLevel * step.levels.p_candidate()) go_on(against, c);
   }
 
   void settle_rivals(const Against& against, Step& step) const {
@@ -128,7 +155,9 @@ class Searcher {
       Candidate* next = nullptr;
       for (Candidate& c : all) {
         const double rival = c.approached ? kNearRival : kRival;
-        if (!c.tried || c.with.fit.polished || c.p > kNearLevel * step.levels.p_candidate() || c.merit() < rival * best) continue;
+        if (!c.tried || c.on_parts || c.with.fit.polished || c.p > kNearLevel * step.levels.p_candidate() ||
+            c.merit() < rival * best)
+          continue;
         if (next == nullptr || c.merit() > next->merit()) next = &c;
       }
       if (next == nullptr) return;
@@ -158,9 +187,18 @@ class Searcher {
   }
 
   /// Moves to the front what explains with fewer parameters, where the more of the best say nothing: a likelihood ratio that
-  /// chance makes with a probability above alpha / 2.
+  /// chance makes with a probability above alpha / 2. Where the floor is unknown no effect may explain all that is left, and
+  /// what was not modelled makes every ratio significant: there it is what the blocks of the selecting record can't tell apart.
   void prefer_simpler(Step& step) const {
     auto& all = step.candidates;
+    if (!floor_known_) {
+      for (std::size_t n = 1; n < all.size() && all[n].accepted; ++n) {
+        if (!all[n].with.fit.polished || !(all[n].price < all.front().price)) continue;
+        if (!(distinction(bench_, all.front(), all[n]) < step.levels.z_candidate())) continue;
+        std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n), all.begin() + static_cast<std::ptrdiff_t>(n) + 1);
+      }
+      return;
+    }
     for (std::size_t n = 1; n < all.size() && all[n].explains; ++n) {
       const double more = all.front().price - all[n].price, gain = all.front().fit_gain - all[n].fit_gain;
       if (!(more > 0.0) || numerics::chi_squared_tail(gain, more) < out_.levels.alpha / 2.0) continue;

@@ -111,6 +111,7 @@ std::optional<Layout> excerpt_of(const Layout& whole, Eigen::Index rows) {
   const auto count = static_cast<Eigen::Index>(whole.segments.size());
   const Layout::Segment& first = whole.segments.front();
   if (count == 1 && first.window > 0) {
+    if (whole.integrates) return {};  // pieces with a state of their own say little of a drift
     const Eigen::Index length = first.window + rows / kPieces;
     if (2 * kPieces * length > first.samples.count) return {};
     for (Eigen::Index i = 0; i < kPieces; ++i) {

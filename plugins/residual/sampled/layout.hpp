@@ -39,7 +39,7 @@ Expected<Layout> make_layout(Eigen::Index samples, double sample_time_s, const B
                              const std::vector<double>& known, double segment_s);
 
 /// A part of a cut with about that many rows, spread evenly over the record: pieces with a state of their own each, or some of
-/// the segments. Nothing where that spares less than half.
+/// the segments. Nothing where that spares less than half, or where a plant that integrates is simulated in one.
 std::optional<Layout> excerpt_of(const Layout& whole, Eigen::Index rows);
 
 }  // namespace bodeflow::residual

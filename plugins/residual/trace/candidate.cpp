@@ -334,11 +334,13 @@ void judge(const Levels& levels, bool share_counts, bool floor_known, Candidate&
   if (!c.tried) return;
   const auto below = [](double limit) { return ", needed below " + short_number(limit, 2); };
   const double was = std::sqrt(c.select_gain.excess_before), is = std::sqrt(c.select_gain.excess_after);
+  // A noise model takes what changes slowly, an offset or a drift, for noise: blocks that show it at the same price are enough.
+  const bool by_blocks = !floor_known && c.select_gain.block_z > levels.z_candidate();
   if (const std::string where = unphysical(c); !where.empty() && std::min(c.p, 1.0 - c.p) < levels.p_candidate()) {
     c.reason = "not physical: " + where;
   } else if (!(c.p < levels.p_candidate())) {
     c.reason = "improves the fit no more than chance does: p = " + short_number(c.p, 2) + below(levels.p_candidate());
-  } else if (!(c.select_p < levels.p_candidate())) {
+  } else if (!(c.select_p < levels.p_candidate()) && !by_blocks) {
     c.reason =
         "does not help on the record that was not fitted: p = " + short_number(c.select_p, 2) + below(levels.p_candidate());
   } else if (!floor_known && !(c.select_gain.block_z > levels.z_block())) {

@@ -10,6 +10,16 @@ namespace bodeflow::sanathanan_koerner {
 namespace {
 
 constexpr std::int64_t kHighestOrder = 1000;
+constexpr double kMostStates = 1e6;
+
+States read_states(const std::string& text) {
+  if (text == "all") return {};
+  if (text == "auto") return {true, {}};
+  const auto value = convert(text, "1");
+  if (!value || !(*value >= 0.0 && *value <= kMostStates) || *value != std::floor(*value))
+    fail("states: '" + text + "'; allowed: all, auto, or a number from 0 on");
+  return {true, static_cast<Eigen::Index>(*value)};
+}
 
 std::optional<Eigen::Index> read_order(const std::string& text) {
   if (text == "auto") return {};
@@ -65,6 +75,11 @@ void describe_method(Describe& d) {
   d.parameter("stability", "reflect").choices({"reflect", "off"}).doc("unstable poles reflected into the stable half, or left");
   d.parameter("iterations", std::int64_t{30}).range(1, 1000).doc("most iterations; the best iterate is kept");
   d.parameter("tolerance", 1e-8).unit("1").range(0, 1).doc("relative change of the error that ends the iteration");
+  d.parameter("states", "all")
+      .doc(
+          "of several inputs and outputs, where each pole has as many states as there are inputs or outputs: all; auto: the "
+          "balanced truncation with the fewest states that changes the response by less than half the error of the fit; or their "
+          "number");
   d.parameter("refine", false).doc("nonlinear least squares from the result on (Gauss-Newton)");
 }
 
@@ -75,6 +90,7 @@ void read_method(const Parameters& p, Settings& s) {
   s.stable = p.text("stability") == "reflect";
   s.stop.iterations = static_cast<int>(p.integer("iterations"));
   s.stop.tolerance = p.number("tolerance");
+  s.states = read_states(p.text("states"));
   s.refine = p.boolean("refine");
 }
 

@@ -15,7 +15,7 @@ void describe_selection(Describe& d);
 Selection read_selection(const Parameters& p);
 Weighting read_weighting(const Parameters& p);
 
-/// order, highest_order, columns, stability, iterations, tolerance, refine.
+/// order, highest_order, columns, stability, iterations, tolerance, states, refine.
 void describe_method(Describe& d);
 void read_method(const Parameters& p, Settings& s);
 

@@ -1,14 +1,29 @@
 #include "identification.hpp"
 
+#include <bodeflow/numerics/frequency_response.hpp>
 #include <cmath>
+#include <numbers>
 
 namespace bodeflow::sanathanan_koerner {
 namespace {
+
+constexpr double kLostDigits = 1e-5;  // of the response, between state space and fit
 
 /// Conjugate pairs together, those above the axis first; as they are where a conjugate is missing.
 Eigen::VectorXcd paired(const Eigen::VectorXcd& poles) {
   const auto set = pole_set(poles);
   return set ? all_poles(*set) : poles;
+}
+
+/// Nothing where the state space gives the response that was fitted. A pole that has gone to infinity takes the digits with it.
+Expected<void> check_realisation(const Data& data, const Identification& id) {
+  const auto lines = numerics::hessenberg_response(id.system, data.omega_rad_s / (2.0 * std::numbers::pi));
+  double squares = 0.0;
+  for (Eigen::Index k = 0; k < data.lines(); ++k)
+    squares += (lines[static_cast<std::size_t>(k)].col(0).transpose() - id.response.row(k)).squaredNorm();
+  if (std::sqrt(squares) <= kLostDigits * id.response.norm()) return {};
+  return unexpected("order " + std::to_string(id.order) +
+                    ": a pole has gone to infinity and the state space does not hold the model; lower the order");
 }
 
 void add_uncertainty(const Data& data, const Settings& settings, Identification& id) {
@@ -59,14 +74,23 @@ Expected<Identification> identify(const Data& data, const Settings& settings, Ei
   id.system = std::move(found->system);
   id.poles = paired(found->poles);
   id.response = std::move(found->response);
+  if (auto good = check_realisation(data, id); !good) return unexpected(good.error().text);
   id.reflected = found->reflected;
   id.prewarp_rad_s = found->prewarp_rad_s;
   id.course = std::move(found->course);
   id.refinement = std::move(found->refinement);
+  if (settings.states.reduce) {
+    auto fewer = reduced_states(data, reshaped(id.system, inputs), id.response, settings.states);
+    if (!fewer) return unexpected(fewer.error().text);
+    id.poles = paired(fewer->poles);
+    id.response = fewer->response;
+    id.no_covariance = "its states have been reduced; `states: all` has one";
+    id.reduction = std::move(*fewer);
+  }
   id.cost = weighted_residual(data, id.response).squaredNorm();
   for (Eigen::Index i = 0; i < data.channels(); ++i) id.equations += (data.weights_of(i).array() > 0.0).count();
   id.parameters = id.order + data.channels() * (id.order + 1);
-  add_uncertainty(data, settings, id);
+  if (!id.reduction) add_uncertainty(data, settings, id);
   return id;
 }
 

@@ -25,6 +25,7 @@ struct Identification {
   std::optional<double> prewarp_rad_s;
   Course course;
   std::optional<Course> refinement;
+  std::optional<Reduction> reduction;  ///< then `poles` and `response` are those of the reduced model
 
   double cost = 0.0;                            ///< sum of |weight (g - model)|^2
   Eigen::Index equations = 0;                   ///< complex, of lines with a weight
@@ -34,7 +35,9 @@ struct Identification {
   std::string no_covariance;      ///< why there is none
   std::optional<OrderScan> scan;  ///< where the order was sought
 
-  double error() const { return (refinement ? *refinement : course).least(); }
+  double error() const { return reduction ? reduction->relative_error : (refinement ? *refinement : course).least(); }
+  /// The model as a matrix of `inputs` columns: the reduced one, or all states.
+  numerics::StateSpace matrix(Eigen::Index inputs) const { return reduction ? reduction->system : reshaped(system, inputs); }
 };
 
 /// The model of the data by the method of the settings: order, iteration, refinement, covariance.

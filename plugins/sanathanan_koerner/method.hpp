@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "fit.hpp"
+#include "reduction.hpp"
 #include "vector_fitting.hpp"
 
 namespace bodeflow::sanathanan_koerner {
@@ -32,6 +33,7 @@ struct Settings {
   Columns columns = Columns::stacked;
   bool stable = true;
   bool refine = false;
+  States states;                ///< of several inputs and outputs
   bool known_variance = false;  ///< the weights are one over the deviation of the response
   StopRule stop;
 };

@@ -39,19 +39,28 @@ void add_signals(const Measured& measured, records::ModelData& m) {
   if (measured.outputs.names.size() > 1) m.outputs = measured.outputs;
 }
 
+void add_reduction(const Reduction& reduction, Eigen::Index order, RecordBuilder& r) {
+  r.set("fitted_poles", static_cast<std::int64_t>(order));
+  r.set("states_before", static_cast<std::int64_t>(reduction.hankel_singular_values.size()));
+  r.set("reduction_change", reduction.rms_change);
+  r.set("reduction_bound", reduction.error_bound);
+  if (std::isfinite(reduction.gap())) r.set("hankel_gap", reduction.gap());
+  records::put_list<double>(r, "hankel_singular_values", "", reduction.hankel_singular_values);
+}
+
 records::ModelData described(const Identification& id, const Measured& measured, const std::string& method,
                              const std::vector<std::string>& warnings) {
   records::ModelData m;
   const auto inputs = static_cast<Eigen::Index>(measured.inputs.names.size());
   m.method = method;
   m.form = "state_space";
-  m.order = id.order;
+  m.order = id.reduction ? id.reduction->system.states() : id.order;
   m.sample_time_s = id.system.sample_time;
-  m.state_space = reshaped(id.system, inputs);
+  m.state_space = id.matrix(inputs);
   m.poles = id.poles;
   if (id.uncertainty) m.pole_covariance = id.uncertainty->poles;
   if (measured.data.channels() == 1) {
-    if (const auto tf = faithful_polynomials(id.system, id.poles, measured.data.omega_rad_s, id.response)) {
+    if (const auto tf = faithful_polynomials(*m.state_space, id.poles, measured.data.omega_rad_s, id.response)) {
       m.numerator = tf->numerator;
       m.denominator = tf->denominator;
       if (const auto zeros = numerics::roots(numerics::trimmed(tf->numerator))) m.zeros = *zeros;
@@ -63,7 +72,8 @@ records::ModelData described(const Identification& id, const Measured& measured,
   m.conventions = {id.system.sample_time > 0.0
                        ? "sampled signals: hold and delay of the sampling are part of the model"
                        : "continuous in time; a hold of the input, where there is one, is part of the model"};
-  if (measured.data.channels() > 1) m.conventions.push_back("one denominator for all responses; `order` counts its poles");
+  if (measured.data.channels() > 1 && !id.reduction)
+    m.conventions.push_back("one denominator for all responses; `order` counts its poles");
   if (measured.known_variance) {
     m.cost = id.cost;
     m.expected_cost = static_cast<double>(id.equations) - 0.5 * static_cast<double>(id.parameters);
@@ -107,9 +117,10 @@ RecordBuilder model_record(const Identification& id, const Measured& measured, c
   r.set("relative_error", id.error());
   r.set("rms_error", error.norm() / std::sqrt(static_cast<double>(error.size())));
   r.set("max_error", error.maxCoeff());
-  r.set("states",
-        static_cast<std::int64_t>(id.system.states() * static_cast<Eigen::Index>(std::min(measured.inputs.names.size(),
-                                                                                          measured.outputs.names.size()))));
+  const auto all =
+      id.system.states() * static_cast<Eigen::Index>(std::min(measured.inputs.names.size(), measured.outputs.names.size()));
+  r.set("states", static_cast<std::int64_t>(id.reduction ? id.reduction->system.states() : all));
+  if (id.reduction) add_reduction(*id.reduction, id.order, r);
   r.set("iterations", static_cast<std::int64_t>(id.course.errors.size()));
   r.set("best_iteration", static_cast<std::int64_t>(id.course.best + 1));
   r.set("converged", id.course.converged);

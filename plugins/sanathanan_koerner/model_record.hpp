@@ -13,7 +13,8 @@ namespace bodeflow::sanathanan_koerner {
 /// too where they reproduce the response (kPolynomialError), for readers that need them. Beside what records/model.hpp writes:
 /// attributes `relative_error` (weighted residual over the weighted data), `rms_error`, `max_error` (of |G - model|, not
 /// weighted), `iterations`, `best_iteration`, `converged`, `reason`, `reflected_poles`, `prewarp` [rad/s], `refinement`,
-/// `states`; array `iteration_error`.
+/// `states`; array `iteration_error`. Of a reduced model also `fitted_poles`, `states_before`, `reduction_change` (rms over the
+/// lines), `reduction_bound`, `hankel_gap`; array `hankel_singular_values`, and `order` is the number of states.
 RecordBuilder model_record(const Identification& id, const Measured& measured, const std::string& method,
                            const std::vector<std::string>& warnings);
 

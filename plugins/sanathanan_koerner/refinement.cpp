@@ -12,6 +12,7 @@ namespace {
 constexpr double kFirstDamping = 1e-6;  // of the squared norm of the equations
 constexpr double kMostDamping = 1e6;
 constexpr double kRounding = 1e-13;  // error at which exact data are reproduced
+constexpr double kFarthest = 1e6;    // times the highest frequency: a pole further out is no part of a proper model in doubles
 
 /// Triangle of the equations of a step, the residual as last column, in the basis of the model.
 Eigen::MatrixXd step_equations(const Data& data, const Eigen::VectorXd& q, const Basis& basis, const Fit& now) {
@@ -38,6 +39,11 @@ Eigen::VectorXd step(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& den
   Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * n + 1);
   right.head(n) = -triangle.col(n).head(n);
   return rows.colPivHouseholderQr().solve(right);
+}
+
+/// True without poles on their way to infinity, which a state space can't hold: its direct part cancels theirs.
+bool is_proper(const Fit& f, const Eigen::VectorXd& omega) {
+  return f.model.plane.discrete() || (f.poles.array().abs() <= kFarthest * omega[omega.size() - 1]).all();
 }
 
 bool is_stable(const Fit& f) {
@@ -77,7 +83,8 @@ Expected<Fit> refined(const Data& data, const Fit& start, const RefinementSettin
       Eigen::VectorXcd d(values.size());
       for (Eigen::Index k = 0; k < d.size(); ++k) d[k] = w[k] > 0.0 ? values[k] / w[k] : std::complex<double>(1.0);
       auto trial = with_denominator(data, plane, d, order);
-      if (!trial || (settings.stable && !is_stable(*trial)) || !(trial->error() < error)) continue;
+      if (!trial || !is_proper(*trial, data.omega_rad_s) || (settings.stable && !is_stable(*trial))) continue;
+      if (!(trial->error() < error)) continue;
       accepted = true;
       now = std::move(trial);
       note(course, now->error());

@@ -11,11 +11,13 @@ namespace {
 
 using bodeflow::sanathanan_koerner::Data;
 
-Method rational(const std::string& name, bodeflow::sanathanan_koerner::Method method, bool refine) {
+Method rational(const std::string& name, bodeflow::sanathanan_koerner::Method method, bool refine,
+                bodeflow::sanathanan_koerner::Spacing spacing = bodeflow::sanathanan_koerner::Spacing::linear) {
   return {name, [=](const Data& data, Eigen::Index ports, Eigen::Index order) -> std::optional<Model> {
             bodeflow::sanathanan_koerner::Settings settings;
             settings.method = method;
             settings.refine = refine;
+            settings.initial_poles = spacing;
             auto found = bodeflow::sanathanan_koerner::fitted(data, settings, order, ports);
             if (!found) return {};
             return Model{std::move(found->system), std::move(found->poles)};
@@ -40,8 +42,12 @@ Method subspace(const std::string& name, int polish) {
 
 std::vector<Method> methods() {
   using bodeflow::sanathanan_koerner::Method;
-  return {rational("sanathanan_koerner", Method::arnoldi, false), rational("sanathanan_koerner, refined", Method::arnoldi, true),
-          rational("vector_fitting", Method::vector_fitting, false), subspace("subspace", 5),
+  return {rational("sanathanan_koerner", Method::arnoldi, false),
+          rational("sanathanan_koerner, refined", Method::arnoldi, true),
+          rational("vector_fitting", Method::vector_fitting, false),
+          rational("vector_fitting, logarithmic first poles", Method::vector_fitting, false,
+                   bodeflow::sanathanan_koerner::Spacing::logarithmic),
+          subspace("subspace", 5),
           subspace("subspace, not polished", 0)};
 }
 

@@ -21,7 +21,7 @@ struct Method {
   std::function<std::optional<Model>(const bodeflow::sanathanan_koerner::Data&, Eigen::Index ports, Eigen::Index order)> fit;
 };
 
-/// bodeflow's methods, in their default tuning.
+/// bodeflow's methods; in their default tuning where the name says no other.
 std::vector<Method> methods();
 
 /// Magnitudes of the errors over lines and entries.

@@ -107,6 +107,47 @@ TEMPLATE_TEST_CASE("blocks: one input and output give polynomials too, so that e
   CHECK(scan.text("rule").value().find("the minimum of MDL") == 0);
 }
 
+TEMPLATE_TEST_CASE("blocks: two modes that all inputs and outputs see in one way need two states each", "", ModelBlock,
+                   VectorFittingBlock) {
+  // Residues of rank 1: the entries of each mode are those of [1; 2] [1 3].
+  records::ResponseData d;
+  d.form = "known_input";
+  d.input_names = {"u1", "u2"};
+  d.output_names = {"y1", "y2"};
+  d.response_units.assign(4, "m/N");
+  d.frequency_hz = kFrequency;
+  d.response = Eigen::MatrixXcd::Zero(60, 4);
+  numerics::Random random(6);
+  const double gain[] = {1.0, 3.0, 2.0, 6.0};
+  for (Eigen::Index k = 0; k < 60; ++k) {
+    const std::complex<double> s(0.0, 2.0 * std::numbers::pi * kFrequency[k]);
+    for (Eigen::Index e = 0; e < 4; ++e)
+      d.response(k, e) =
+          gain[e] * (100.0 / (s * s + 0.4 * s + 100.0) - 900.0 / (s * s + 2.0 * s + 1600.0)) + 1e-4 * complex_normal(random);
+  }
+  d.variance = Eigen::MatrixXd::Constant(60, 4, 1e-8);
+  const RecordBuilder response = records::write_response(d);
+  for (const char* states : {"auto", "4"}) {
+    BlockDriver<TestType> block;
+    block.set("order", "4").set("states", states);
+    run(block, response);
+    const RecordView model(*block.records()[0]);
+    const auto read = records::read_linear_model(model);
+    REQUIRE(read);
+    CHECK(read->order == 4);
+    CHECK(read->state_space->states() == 4);
+    CHECK(read->state_space->inputs() == 2);
+    CHECK(worst_match(read->poles, Eigen::VectorXcd::Constant(1, std::complex<double>(-0.2, std::sqrt(100.0 - 0.04)))) < 1e-3);
+    CHECK(model.integer("fitted_poles").value() == 4);
+    CHECK(model.integer("states_before").value() == 8);
+    CHECK(model.number("hankel_gap").value() > 100.0);
+    CHECK(model.array("hankel_singular_values")->shape[0] == 8);
+    CHECK(model.number("reduction_change").value() < 1e-4);
+    CHECK(model.number("rms_error").value() == Approx(1e-4).epsilon(0.15));
+    CHECK(*read->cost == Approx(240.0).epsilon(0.15));
+  }
+}
+
 TEST_CASE("sanathanan_koerner.model: without variance a warning says what is missing") {
   BlockDriver<ModelBlock> block;
   block.set("order", "4");
@@ -161,6 +202,8 @@ TEST_CASE("sanathanan_koerner.model: parameters that can't be meant are refused 
   const RecordBuilder r = response_record(false, 1, 1);
   CHECK(refusal<ModelBlock>({{"order", "four"}}, r) == "order: 'four'; allowed: 0 to 1000, or auto");
   CHECK(refusal<ModelBlock>({{"order", "90"}}, r) == "order 90 with 1 response needs at least 91 lines; there are 60");
+  CHECK(refusal<ModelBlock>({{"states", "few"}}, r) == "states: 'few'; allowed: all, auto, or a number from 0 on");
+  CHECK(refusal<ModelBlock>({{"order", "4"}, {"states", "9"}}, r) == "states: 9 states; allowed: 0 to 4");
   CHECK(refusal<ModelBlock>({{"prewarp", "20"}}, r) ==
         "prewarp: '20'; allowed: a frequency above 0 with its unit, such as 20 Hz, or auto");
   CHECK(refusal<ModelBlock>({{"prewarp", "20 Hz"}, {"domain", "z"}}, r) ==

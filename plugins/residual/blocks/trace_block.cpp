@@ -66,6 +66,7 @@ class Choice {
       if (std::find(dropped.begin(), dropped.end(), chosen[n]) != dropped.end()) continue;
       catalogue.push_back({what, parts_.effect(what.id)});
     }
+    if (catalogue.empty() && !all_.empty()) fail("`effects` and `without` leave no effect to try");
     return catalogue;
   }
 

@@ -36,6 +36,13 @@ Expected<void> check(const TraceData& data) {
   }
   if (data.select->facts().checksum == data.test->facts().checksum)
     return refused("the records 'select' and 'test' hold the same samples");
+  for (std::size_t n = 0; n < data.fit.size(); ++n) {
+    for (std::size_t before = 0; before < n; ++before) {
+      if (data.fit[before]->facts().checksum == data.fit[n]->facts().checksum)
+        return refused("the records '" + data.fit[before]->facts().name + "' and '" + data.fit[n]->facts().name +
+                       "' hold the same samples; fitted twice they would seem to say more than they do");
+    }
+  }
   for (const auto& fitted : data.fit) {
     for (const auto& h : held) {
       if (fitted->facts().checksum == h->facts().checksum)

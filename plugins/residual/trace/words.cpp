@@ -73,6 +73,14 @@ std::string nearest(const Trace& t) {
   return "The nearest candidate is " + c.label + ": it " + (c.reason.rfind("not physical", 0) == 0 ? "is " : "") + c.reason + ".";
 }
 
+/// Whether the base model leaves more than noise between the lines of a record.
+bool between_lines(const Trace& t) {
+  for (const RecordTests& record : t.searched.base.tests)
+    for (const ClassTest& test : record.classes)
+      if ((test.name == "skirts" || test.name == "between") && !(test.p > t.searched.levels.p_class())) return true;
+  return false;
+}
+
 }  // namespace
 
 std::string remainder(const Trace& t) {
@@ -161,6 +169,10 @@ std::vector<std::string> advice(const Trace& t, const TraceData& data) {
       for (const ClassTest& c : r.classes) odd = odd || c.name == "odd";
     if (!odd) texts.push_back("all odd lines are excited: leave some out, so that odd nonlinearities show on them");
   }
+  if (periodic && periods > 0 && !response && t.verdict == Verdict::unexplained && between_lines(t))
+    texts.push_back(
+        "what is left stands between the lines too, where a steady periodic excitation leaves noise alone: check that the period "
+        "is right, and skip more periods in case the first one still holds the transient");
   if (!periodic && !response)
     texts.push_back("the noise floor of a record that is not periodic is unknown; repeat a period 6 times to know it");
   return texts;

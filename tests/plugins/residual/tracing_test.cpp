@@ -212,6 +212,10 @@ TEST_CASE("tracing: records that do not belong together are refused by name") {
   d = records({}, 13);
   d.test = d.fit[1];
   CHECK(refusal(d) == "the records 'fit 2' and 'fit 2' hold the same samples; one of them must not be fitted");
+  d = records({}, 13);
+  d.fit.push_back(d.fit[0]);
+  CHECK(refusal(d) ==
+        "the records 'fit 1' and 'fit 1' hold the same samples; fitted twice they would seem to say more than they do");
   d.fit.clear();
   CHECK(refusal(d) == "no record to fit");
 }

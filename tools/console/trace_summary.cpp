@@ -82,11 +82,13 @@ void print_parameters(const Json& record) {
                std = values(record, "parameters_after_std"), own = values(record, "effect_parameters"),
                own_std = values(record, "effect_parameter_std");
   if (before.empty()) return;
-  fmt::print("  {}\n", dim(fmt::format("{:<{}} {:>12} {:>12} {:>12}", "parameter", kName, "before", "after", "std")));
+  const bool some = !added(record).empty();
+  fmt::print("  {}\n", dim(some ? fmt::format("{:<{}} {:>12} {:>12} {:>12}", "parameter", kName, "before", "after", "std")
+                                : fmt::format("{:<{}} {:>12} {:>12}", "parameter", kName, "value", "std")));
   for (std::size_t i = 0; i < before.data.size(); ++i) {
-    fmt::print("  {:<{}} {} {} {}\n",
+    fmt::print("  {:<{}} {}{} {}\n",
                named(text_at(attribute(record, "parameter_names"), i), text_at(attribute(record, "parameter_units"), i)), kName,
-               cell(before.at(i)), cell(after.at(i)), cell(std.at(i), 12, 2));
+               cell(before.at(i)), some ? " " + cell(after.at(i)) : "", cell(std.at(i), 12, 2));
   }
   for (std::size_t i = 0; i < own.data.size(); ++i) {
     fmt::print(
@@ -111,6 +113,10 @@ void print_classes(const Json& record) {
     second += " " + cell(after.at(row, c), 9, 3);
   }
   const std::string name = text_at(records, row);
+  if (added(record).empty()) {
+    fmt::print("  {}\n  {:<{}}{}\n", dim(head), name, kName, first);
+    return;
+  }
   fmt::print("  {}\n  {:<{}}{}\n  {:<{}}{}\n", dim(head), name + ", before", kName, first, name + ", after", kName, second);
 }
 

@@ -45,7 +45,7 @@ table{border-collapse:collapse;font-size:.875rem;font-variant-numeric:tabular-nu
 caption{text-align:left;font-weight:600;padding:.25rem 0 .4rem}
 th,td{padding:.28rem .9rem .28rem 0;border-bottom:1px solid var(--line);vertical-align:top;text-align:left}
 thead th{color:var(--quiet);font-weight:500;border-bottom:1px solid var(--quiet);vertical-align:bottom}
-tbody th{font-weight:400}tbody th.w{min-width:8rem}
+tbody th{font-weight:400}tbody th.w{min-width:9.5rem}td.w.s{min-width:15rem}
 .n{text-align:right;white-space:nowrap}td.w,th.w{max-width:34rem;overflow-wrap:anywhere;min-width:5.5rem}
 th.n:first-child{text-align:left}
 details{margin:.75rem 0;border:1px solid var(--line);border-radius:6px;padding:.5rem .9rem}

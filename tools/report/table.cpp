@@ -14,6 +14,20 @@ std::string csv_title(const std::string& title) {
   return quoted + "\"";
 }
 
+// A cell of so many characters is a sentence.
+constexpr std::size_t kSentence = 50;
+
+/// The style of each column: digits, words, or sentences, which want room where the page is narrow.
+std::vector<const char*> styles_of(const Table& table) {
+  std::vector<const char*> styles;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const bool long_one = i > 0 && std::any_of(table.rows.begin(), table.rows.end(),
+                                               [i](const auto& row) { return i < row.size() && row[i].size() > kSentence; });
+    styles.push_back(table.columns[i].number ? "n" : long_one ? "w s" : "w");
+  }
+  return styles;
+}
+
 }  // namespace
 
 void add_table(Markup& body, const Table& table) {
@@ -23,14 +37,15 @@ void add_table(Markup& body, const Table& table) {
   const bool headed =
       std::any_of(table.columns.begin(), table.columns.end(), [](const Column& column) { return !column.title.empty(); });
   if (headed) body.open("thead").open("tr");
-  for (const auto& column : headed ? table.columns : std::vector<Column>{})
-    body.element("th", {{"scope", "col"}, {"class", column.number ? "n" : "w"}}, column.title);
+  const auto styles = styles_of(table);
+  for (std::size_t i = 0; headed && i < table.columns.size(); ++i)
+    body.element("th", {{"scope", "col"}, {"class", styles[i]}}, table.columns[i].title);
   if (headed) body.close("tr").close("thead");
   body.open("tbody");
   for (const auto& row : table.rows) {
     body.open("tr");
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const char* style = i < table.columns.size() && table.columns[i].number ? "n" : "w";
+      const char* style = i < styles.size() ? styles[i] : "w";
       if (i == 0)
         body.element("th", {{"scope", "row"}, {"class", style}}, row[i]);
       else

@@ -77,7 +77,8 @@ void add_over_frequency(Page& page, const Record& record, const Array& frequency
   const Array *before = record.array("residual_before", frequency.shape),
               *after = record.array("residual_after", frequency.shape), *noise = record.array("residual_noise", frequency.shape),
               *kind = record.array("kind", frequency.shape);
-  if (before == nullptr || after == nullptr || !known(noise)) return;
+  const bool broken = noise == nullptr && record.array("residual_noise") != nullptr;
+  if (before == nullptr || after == nullptr || broken) return;
   Chart chart = frequency_chart(record, "_residual", "Residual on the test record");
   const bool added = !record.texts("effects").empty();
   bool first = true;
@@ -85,14 +86,18 @@ void add_over_frequency(Page& page, const Record& record, const Array& frequency
     if (kind != nullptr && std::none_of(kind->re.begin(), kind->re.end(), [&](double k) { return within(c, k); })) continue;
     Panel panel = panel_of(with_unit(kind == nullptr ? "Lines" : c.title, before->unit), Scale::logarithmic);
     panel.height = 190.0;
-    panel.series.push_back(thinned(lines_of(frequency, *before, kind, c, first ? "before" : "", 1), true));
+    panel.series.push_back(thinned(lines_of(frequency, *before, kind, c, first ? (added ? "before" : "residual") : "", 1), true));
     if (added) panel.series.push_back(thinned(lines_of(frequency, *after, kind, c, first ? "after" : "", 0), true));
-    add_noise(panel, frequency, *noise, first);
+    if (known(noise)) add_noise(panel, frequency, *noise, first);
     chart.panels.push_back(std::move(panel));
     first = false;
     if (kind == nullptr) break;
   }
   if (chart.panels.empty()) return;
+  if (!known(noise)) {
+    page.figure(chart, "Measured minus predicted. Where the noise is not known, nobody can say how small it could be.");
+    return;
+  }
   page.figure(
       chart,
       "A right model leaves the noise: its lines scatter around the noise's root mean square, and one in 8,000 stands above "
@@ -123,7 +128,7 @@ void add_over_time(Page& page, const Record& record, const Array& time) {
     chart.panels.push_back(std::move(panel));
   }
   Panel panel = panel_of(with_unit("Residual", before->unit), Scale::linear);
-  panel.series.push_back(course(*before, "before", 1));
+  panel.series.push_back(course(*before, record.texts("effects").empty() ? "" : "before", 1));
   if (!record.texts("effects").empty()) panel.series.push_back(course(*after, "after", 0));
   chart.panels.push_back(std::move(panel));
   page.figure(chart, "Measured minus predicted. Where the noise is not known, nobody can say how small it could be.");

@@ -84,14 +84,19 @@ void add_errors(Page& page, const Record& record) {
     if (std::isfinite(value) && value >= 0.0) bars.push_back({level.name, value, level.colour});
   }
   if (bars.size() < 2) return;
-  const std::string unit = record.text("unit"), limit = shown(record.number("noise_floor_99.9"), unit);
-  const double less = record.number("excess_before"), rest = record.number("excess_after");
-  const std::string excess = std::isfinite(less + rest) ? shown(less, unit) + " before, " + shown(rest, unit) + " after" : "–";
+  const std::string unit = record.text("unit");
+  const double highest = record.number("noise_floor_99.9"), less = record.number("excess_before"),
+               rest = record.number("excess_after");
+  const bool known = std::isfinite(record.number("noise_floor"));
+  std::string text =
+      "Root mean square on the test record, which was not used before, of the mean period within the band of the lines.";
+  if (!known) text = "Root mean square on the test record, which was not used before. Its noise is not known.";
+  if (known && std::isfinite(highest))
+    text += " The noise alone stays below " + shown(highest, unit) + " with a probability of 99.9 %.";
+  if (known && added && std::isfinite(less + rest))
+    text += " What is not noise: " + shown(less, unit) + " before, " + shown(rest, unit) + " after.";
   page.figure(draw_bars("Error of the model", bars, unit, kWide), draw_bars("Error of the model", bars, unit, kNarrow),
-              record.key + "_error",
-              "Root mean square on the test record, which was not used before, of the mean period within the band of the lines." +
-                  (limit == "–" ? "" : " The noise alone stays below " + limit + " with a probability of 99.9 %.") +
-                  (added && excess != "–" ? " What is not noise: " + excess + "." : ""));
+              record.key + "_error", text);
 }
 
 void add_effects(Page& page, const Record& record) {
@@ -118,13 +123,16 @@ void add_parameters(Page& page, const Record& record) {
   const Array* before_std = record.array("parameters_before_std", before->shape);
   const Array* after_std = record.array("parameters_after_std", before->shape);
   if (after == nullptr) return;
-  Table table{"Parameters of the model", {{"Parameter", false}, {"Before"}, {"std"}, {"After"}, {"std"}, {"Change"}}, {}};
+  const bool added = !record.texts("effects").empty();
+  Table table{"Parameters of the model", {{"Parameter", false}, {added ? "Before" : "Value"}, {"std"}}, {}};
+  if (added) table.columns.insert(table.columns.end(), {{"After"}, {"std"}, {"Change"}});
+  const auto std_at = [](const Array* std, std::size_t n) { return std == nullptr ? "–" : shown(std->re[n], 3); };
   for (std::size_t n = 0; n < before->size(); ++n) {
-    table.rows.push_back({with_unit(record.text_at("parameter_names", n, fmt::format("parameter {}", n + 1)),
-                                    record.text_at("parameter_units", n, before->unit)),
-                          shown(before->re[n], 6), before_std == nullptr ? "–" : shown(before_std->re[n], 3),
-                          shown(after->re[n], 6), after_std == nullptr ? "–" : shown(after_std->re[n], 3),
-                          percent(after->re[n] / before->re[n] - 1.0)});
+    std::vector<std::string> row{with_unit(record.text_at("parameter_names", n, fmt::format("parameter {}", n + 1)),
+                                           record.text_at("parameter_units", n, before->unit)),
+                                 shown(before->re[n], 6), std_at(before_std, n)};
+    if (added) row.insert(row.end(), {shown(after->re[n], 6), std_at(after_std, n), percent(after->re[n] / before->re[n] - 1.0)});
+    table.rows.push_back(std::move(row));
   }
   add_table(page.body(), table);
 }
@@ -136,11 +144,14 @@ void add_classes(Page& page, const Record& record) {
               *p_before = record.array("class_p_before", shape), *p_after = record.array("class_p_after", shape);
   if (names.empty() || before == nullptr || after == nullptr || p_before == nullptr || p_after == nullptr) return;
   const double limit = record.number("class_p_limit");
-  Table table{"What is left, by class of lines", {{"Record", false}, {"Model", false}}, {}};
+  const bool added = !record.texts("effects").empty();
+  Table table{"What is left, by class of lines", {{"Record", false}}, {}};
+  if (added) table.columns.push_back({"Model", false});
   for (const auto& name : names) table.columns.push_back({name});
   for (std::size_t r = 0; r < records.size(); ++r) {
-    for (const bool late : {false, true}) {
-      std::vector<std::string> row{late ? "" : records[r], late ? "after" : "before"};
+    for (const bool late : added ? std::vector{false, true} : std::vector{false}) {
+      std::vector<std::string> row{late ? "" : records[r]};
+      if (added) row.push_back(late ? "after" : "before");
       for (std::size_t c = 0; c < names.size(); ++c) {
         const std::size_t at = r * names.size() + c;
         const bool found = (late ? p_after : p_before)->re[at] < limit;
@@ -150,6 +161,11 @@ void add_classes(Page& page, const Record& record) {
     }
   }
   add_table(page.body(), table);
+  if (!std::isfinite(record.number("noise_floor"))) {
+    page.paragraph(
+        fmt::format("The noise is not known: * is a residual that does not look like noise (p below {}).", shown(limit, 2)));
+    return;
+  }
   page.paragraph(
       fmt::format("Root mean square of the residual in multiples of the noise; * is more than noise leaves (p below {}). Excited "
                   "lines show what is "
@@ -170,19 +186,22 @@ void add_candidates(Page& page, const Record& record) {
     for (const auto& step : *found) steps.push_back(step.is_number() ? step.get<double>() : kNaN);
   Table table{"Candidates, best first",
               {{"Effect", false},
-               {"Step"},
-               {"Fall of χ², fitted records"},
-               {"p"},
-               {"Fall of χ², selecting record"},
                {"Explains"},
-               {"Why, or why not", false}},
+               {"Why, or why not", false},
+               {"Step"},
+               {"Fall of χ², fitted"},
+               {"p"},
+               {"Fall of χ², selecting"}},
               {}};
   for (std::size_t n = 0; n < names.size(); ++n) {
     const double step = n < steps.size() ? steps[n] : 1.0;
-    table.rows.push_back({names[n], shown(step), shown(fit->re[n], 4), shown(p->re[n], 2), shown(select->re[n], 4),
-                          percent(share->re[n]), record.text_at("candidate_reasons", n, "")});
+    table.rows.push_back({names[n], percent(share->re[n]), record.text_at("candidate_reasons", n, ""), shown(step),
+                          shown(fit->re[n], 4), shown(p->re[n], 2), shown(select->re[n], 4)});
   }
   add_table(page.body(), table);
+  page.paragraph(
+      "The fall of χ² is told for the fitted records, where p is the probability that chance does as well, and for the "
+      "selecting record, which ranks.");
 }
 
 /// What the model leaves on records that were not fitted, in the unit of the output and in multiples of the noise.
@@ -209,7 +228,8 @@ void add_error_table(Page& page, const Record& record) {
     if (!std::isfinite(error)) continue;
     table.rows.push_back({row.name, shown(error), shown(floor), shown(error / floor, 3), shown(record.number(row.excess), 3)});
   }
-  if (table.rows.empty() || !std::isfinite(record.number("excess_before"))) return;
+  if (table.rows.empty() || !std::isfinite(record.number("excess_before")) || !std::isfinite(record.number("noise_floor")))
+    return;
   add_table(page.body(), table);
   page.paragraph("Root mean squares. What is not noise is the root of the difference of the squares of error and noise.");
 }
@@ -249,7 +269,7 @@ void add_records(Page& page, const Record& record) {
     const std::string use = names[n].rfind("fit", 0) == 0 ? "fitted"
                             : names[n] == "select"        ? "ranks the candidates"
                                                           : "the errors told here";
-    table.rows.push_back({names[n], use, levels == nullptr ? "–" : shown(levels->re[n]),
+    table.rows.push_back({names[n], use, levels == nullptr || levels->re[n] == 0.0 ? "–" : shown(levels->re[n]),
                           record.text_at("record_checksums", n, "–").substr(0, 16)});
   }
   add_table(page.body(), table);

@@ -13,6 +13,14 @@ TEST_CASE("report table: captions, headings and cells are escaped, and rows have
   CHECK(body.str().find("<th scope=\"row\" class=\"w\">&lt;x&gt;</th><td class=\"n\">1</td>") != std::string::npos);
 }
 
+TEST_CASE("report table: a column of sentences gets room, one of words does not") {
+  Markup body;
+  add_table(body, {"c",
+                   {{"a", false}, {"b", false}, {"c", false}},
+                   {{"x", "word", "improves the fit no more than chance does: p = 0.18, needed below 0.001"}}});
+  CHECK(body.str().find("<td class=\"w\">word</td><td class=\"w s\">improves") != std::string::npos);
+}
+
 TEST_CASE("report table: without rows there is no table") {
   Markup body;
   add_table(body, {"c", {{"a"}}, {}});

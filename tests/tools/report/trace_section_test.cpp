@@ -98,6 +98,21 @@ TEST_CASE("report: a trace says first what is missing, then shows errors, parame
   CHECK_THAT(page, !Contains("1.01 *"));
 }
 
+TEST_CASE("report: a trace that added nothing tells parameters and classes once") {
+  ordered_json record = trace();
+  ordered_json& a = record["attributes"];
+  a["verdict"] = "none";
+  a["finding"] = "Nothing is missing.";
+  a["effects"] = ordered_json::array();
+  a["effect_parameter_names"] = ordered_json::array();
+  for (const char* own : {"effect_parameters", "effect_parameter_std"}) record["arrays"].erase(own);
+  record["arrays"]["parameters_after"] = record["arrays"]["parameters_before"];
+  record["arrays"]["class_after"] = record["arrays"]["class_before"];
+  const std::string page = page_of({{"trace", record}});
+  for (const char* text : {"gamma [1/s]", ">Value<", "393.4", "39.7 *"}) CHECK_THAT(page, Contains(text));
+  for (const char* absent : {">Before<", ">After<", ">Change<", ">before<", ">after<"}) CHECK_THAT(page, !Contains(absent));
+}
+
 TEST_CASE("report: a trace whose arrays do not fit is shown as far as they do") {
   ordered_json broken = trace();
   broken["arrays"]["class_after"] = array_of("1", {3}, {1, 2, 3});
@@ -146,6 +161,23 @@ TEST_CASE("report: what was measured with the remedy stands beside the errors be
                            "Residual of the model without the effect"})
     CHECK_THAT(page, Contains(text));
   CHECK_THAT(page, !Contains("Candidates, best first"));
+}
+
+TEST_CASE("report: a trace whose noise is not known claims nothing about noise, and draws the residual without it") {
+  ordered_json record = trace();
+  ordered_json& a = record["attributes"];
+  for (const char* of_noise : {"noise_floor", "noise_floor_99.9"}) a[of_noise] = nullptr;
+  a["class_names"] = {"whiteness"};
+  for (const char* classes : {"class_before", "class_after", "class_p_before", "class_p_after"})
+    record["arrays"][classes] = array_of("1", {2, 1}, {1.0, 1e-9});
+  record["arrays"].erase("residual_noise");
+  const std::string page = page_of({{"trace", record}});
+  for (const char* text : {"Its noise is not known.", "a residual that does not look like noise", "Residual on the test record",
+                           "Measured minus predicted. Where the noise is not known"})
+    CHECK_THAT(page, Contains(text));
+  for (const char* absent :
+       {"The noise alone stays below", "What is not noise", "in multiples of the noise", "three times the noise"})
+    CHECK_THAT(page, !Contains(absent));
 }
 
 TEST_CASE("report: a residual over time is drawn with the measured course") {

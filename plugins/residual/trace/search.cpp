@@ -47,6 +47,7 @@ class Searcher {
     while (out_.found.size() < settings_.most_effects && take_step()) {
     }
     if (!out_.found.empty()) find_equivalents();
+    tell_passed_over();
     return std::move(out_);
   }
 
@@ -294,6 +295,15 @@ class Searcher {
         Step step = try_all(*rest, rivals, false, false);
         compare(n, step);
       }
+    }
+  }
+
+  /// What explains and was not the best of its step has a reason too.
+  void tell_passed_over() {
+    for (Step& step : out_.steps) {
+      if (!step.taken) continue;
+      for (Candidate& c : step.candidates)
+        if (c.reason.empty()) c.reason = "explains it too, " + step.candidates[*step.taken].label + " was ahead";
     }
   }
 

@@ -134,6 +134,21 @@ TEST_CASE("tracing: two names for the same law are not separable") {
   CHECK_FALSE(t.searched.found.front().separation.empty());
 }
 
+TEST_CASE("tracing: a second name for the second of two effects has a reason why it was not taken") {
+  Catalogue twins = catalogue();
+  twins.push_back(one_sided("wavelet", [](double n, double) { return std::sin(0.2 * n) + 0.02 * std::cos(0.7 * n); }));
+  const Trace t = traced([](double n, double l) { return 0.8 * wave(n, l) + 0.9; }, 9, twins);
+  REQUIRE(t.searched.found.size() == 2);
+  bool told = false;
+  for (const Step& step : t.searched.steps) {
+    for (const Candidate& c : step.candidates) {
+      CHECK_FALSE(c.reason.empty());
+      told = told || c.reason.find("explains it too, ") == 0;
+    }
+  }
+  CHECK(told);
+}
+
 TEST_CASE("tracing: a declared equivalent is told where the base has a place for it, tried or not") {
   TraceSettings settings;
   FakeLaw law{

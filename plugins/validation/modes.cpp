@@ -87,6 +87,10 @@ Expected<FittedModes> fit_modes(const Eigen::VectorXd& f, const Eigen::VectorXcd
   }
   settings.refine = true;
   auto id = identify(data, settings);
+  if (!id) {  // a refinement can lose a pole that lies far beyond the lines
+    settings.refine = false;
+    id = identify(data, settings);
+  }
   if (!id) return unexpected(id.error().text);
   FittedModes m;
   m.order = id->order;

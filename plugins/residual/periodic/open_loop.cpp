@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bodeflow/numerics/fft.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "model/linear_path.hpp"
 #include "model/sampled_path.hpp"
+#include "periodic/fourier.hpp"
 #include "periodic/periodic_prediction.hpp"
 #include "sampled/record_input.hpp"
 
@@ -28,22 +28,6 @@ constexpr double kSpread = 0.05;
 Complex s_at(double frequency_hz) { return {0.0, kTwoPi * frequency_hz}; }
 
 bool finite(Complex x) { return std::isfinite(x.real()) && std::isfinite(x.imag()); }
-
-/// The real signal of `samples` values with these Fourier coefficients (lines 0 ...), the line at half the samples left out.
-Eigen::VectorXd signal_of(const Eigen::VectorXcd& lines, Eigen::Index samples) {
-  Eigen::VectorXcd full = Eigen::VectorXcd::Zero(samples);
-  const auto size = static_cast<double>(samples);
-  full[0] = lines[0].real() * size;
-  for (Eigen::Index k = 1; k < std::min(lines.size(), (samples + 1) / 2); ++k) {
-    full[k] = lines[k] * size;
-    full[samples - k] = std::conj(full[k]);
-  }
-  return numerics::inverse_dft(full).real();
-}
-
-Eigen::VectorXcd coefficients(const Eigen::VectorXd& signal) {
-  return numerics::half_dft(signal) / static_cast<double>(signal.size());
-}
 
 /// What a reaction at a place moves.
 class ReactionPath {

@@ -2,13 +2,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <bodeflow/numerics/fft.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "model/sampled_path.hpp"
 #include "model/simulate.hpp"
+#include "periodic/fourier.hpp"
 #include "periodic/reaction_of_immittances.hpp"
 #include "sampled/record_input.hpp"
 
@@ -25,22 +25,6 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kNearDc = 1e-6, kIntegrates = 1e4;
 
 Complex s_at(double frequency_hz) { return {0.0, kTwoPi * frequency_hz}; }
-
-/// The real periodic signal of `samples` values with these Fourier coefficients (lines 0 ...).
-Eigen::VectorXd signal_of(const Eigen::VectorXcd& lines, Eigen::Index samples) {
-  Eigen::VectorXcd full = Eigen::VectorXcd::Zero(samples);
-  const auto size = static_cast<double>(samples);
-  full[0] = lines[0].real() * size;
-  for (Eigen::Index k = 1; k < std::min(lines.size(), (samples + 1) / 2); ++k) {
-    full[k] = lines[k] * size;
-    full[samples - k] = std::conj(full[k]);
-  }
-  return numerics::inverse_dft(full).real();
-}
-
-Eigen::VectorXcd coefficients(const Eigen::VectorXd& signal) {
-  return numerics::half_dft(signal) / static_cast<double>(signal.size());
-}
 
 class Predictor {
  public:

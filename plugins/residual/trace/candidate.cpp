@@ -2,146 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "records/signals.hpp"
+#include "trace/attempt.hpp"
 
 namespace bodeflow::residual {
 namespace {
 
 using records::short_number;
 
-constexpr std::size_t kSearches = 2;
-// The linear look promises so much more than was found.
-constexpr double kMoreThere = 1.05;
-// A simulation that does so much of what the look promised confirms it.
-constexpr double kKept = 0.8;
-constexpr int kFirstSteps = 3, kMoreSteps = 10, kStepsCarriedOver = 2;
-// What chance does more often than that is not looked at more closely near the noise.
-constexpr double kWorthASearch = 0.05;
-// Nor what can be no more than so small a part of what is missing.
-constexpr double kWorthOfMissing = 0.02;
-// In units of minus twice the log likelihood: what chance alone moves by more.
-constexpr double kLeastFallOfCost = 0.05;
-// A base that leaves more than this many times the noise may have been pulled far by what is missing: its own starts help.
-constexpr double kPulled = 1.5;
+constexpr int kMoreSteps = 10, kStepsCarriedOver = 2;
 // An estimate may be beyond a bound by this part of the bound, or of the parameter's size, if chance can explain that.
 constexpr double kAtBound = 0.1;
-
-Eigen::VectorXd joined(const Eigen::VectorXd& a, const std::vector<double>& b) {
-  Eigen::VectorXd all(a.size() + static_cast<Eigen::Index>(b.size()));
-  all << a, Eigen::Map<const Eigen::VectorXd>(b.data(), static_cast<Eigen::Index>(b.size()));
-  return all;
-}
-
-/// The coordinates of a fit with further values of parameters that it does not have.
-Eigen::VectorXd extended(const Fit& from, const Coordinates& layout, const std::vector<double>& own) {
-  Eigen::VectorXd at(layout.size());
-  for (std::size_t r = 0; r < layout.records(); ++r) layout.put(joined(from.values(r), own), r, at);
-  return at;
-}
-
-std::vector<Eigen::VectorXd> points(const Against& against, const FitProblem& problem,
-                                    const std::vector<std::vector<double>>& own) {
-  const Fit& from = against.before.fit;
-  std::vector<Eigen::VectorXd> all;
-  for (const auto& values : own) all.push_back(extended(from, problem.layout(), values));
-  if (from.model.additions.empty() && from.chi2 > kPulled * static_cast<double>(from.residual.size()))
-    for (const Eigen::VectorXd& base : against.base_starts)
-      for (const auto& values : own) all.push_back(problem.layout().of(joined(base, values)));
-  return all;
-}
-
-/// The best of quick searches from the most promising points.
-Approach search(const Against& against, FitProblem& problem, const std::vector<Eigen::VectorXd>& points) {
-  std::vector<std::pair<double, Approach>> open;
-  for (const Eigen::VectorXd& point : points) {
-    Approach a = approach_from(problem, point, against.before.fit.jacobian);
-    if (!a.started) continue;
-    const double promised = promised_cost(a);
-    open.emplace_back(promised, std::move(a));
-  }
-  std::stable_sort(open.begin(), open.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  Approach best;
-  for (std::size_t n = 0; n < std::min(open.size(), kSearches); ++n) {
-    Approach& a = open[n].second;
-    problem.bound_base(a.at);
-    approach(problem, kFirstSteps, kLeastFallOfCost, false, a);
-    if (!best.started || a.cost < best.cost) best = std::move(a);
-  }
-  return best;
-}
-
-/// An effect with all that its search needs.
-struct Attempt {
-  const Against& against;
-  FitProblem& problem;
-  std::optional<Looks> looks;
-  std::vector<Eigen::VectorXd> starts;  ///< values of the effect's parameters
-  Null null;
-  double promised = 0.0;  ///< the most that the looks found
-
-  std::vector<Eigen::VectorXd> points_at(const std::vector<Eigen::VectorXd>& own) const {
-    std::vector<std::vector<double>> values;
-    for (const Eigen::VectorXd& v : own) values.emplace_back(v.begin(), v.end());
-    return points(against, problem, values);
-  }
-  double gain(const Approach& a) const { return a.started ? against.before.fit.chi2 - a.cost : 0.0; }
-  void find_null(double found) {
-    null = null_distribution(problem, against.before.fit, starts, found, looks ? &*looks : nullptr);
-  }
-};
-
-/// The model with the effect where the linear look finds most, however little that is.
-Approach nearly_nothing(const Attempt& attempt) {
-  Approach a;
-  const Null& null = attempt.null;
-  a.at = extended(attempt.against.before.fit, attempt.problem.layout(), {null.nearest.begin(), null.nearest.end()});
-  a.residual = attempt.problem.residual(a.at);
-  a.cost = a.residual.squaredNorm();
-  a.jacobian = Eigen::MatrixXd::Zero(0, a.at.size());
-  a.started = a.residual.allFinite();
-  return a;
-}
-
-/// The best that the looks find from some values, simulated; one that matters and that the looks can't be trusted with is
-/// searched for by simulations too, where `thorough` from all these values.
-Approach search_by_looks(Attempt& attempt, const std::vector<Eigen::VectorXd>& starts, bool thorough) {
-  const Against& against = attempt.against;
-  std::vector<Eigen::VectorXd> from;
-  for (const Eigen::VectorXd& start : starts)
-    from.push_back(extended(against.before.fit, attempt.problem.layout(), {start.begin(), start.end()}));
-  LookedUp up = look_up(attempt.problem, *attempt.looks, against.before.fit, from);
-  attempt.promised = std::max(attempt.promised, up.promised);
-  if (!attempt.null.looked) attempt.find_null(up.promised);
-  const double seen = std::max(up.promised, attempt.gain(up.approach));
-  const bool matters = attempt.null.p(seen) < kWorthASearch && seen > kWorthOfMissing * against.missing;
-  const auto kept = [&](const Approach& a) { return a.started && attempt.gain(a) >= kKept * up.promised; };
-  const EffectDescription& what = attempt.problem.model().additions.back().what;
-  const bool smooth = !what.rough && what.memory == 0;
-  if (!matters && !up.approach.started && attempt.null.looked) up.approach = nearly_nothing(attempt);
-  if (up.approach.started && (!matters || (smooth && kept(up.approach)))) return std::move(up.approach);
-  Approach best;
-  if (up.approach.started) best = search(against, attempt.problem, {up.approach.at});
-  if (kept(best) || !thorough) return best;
-  Approach other = search(against, attempt.problem, attempt.points_at(starts));
-  return other.started && (!best.started || other.cost < best.cost) ? other : best;
-}
-
-/// The best of searches from the starts of the effect, and from where the linear look finds more than these do.
-Approach search_all(Attempt& attempt) {
-  const auto from = [&](const std::vector<Eigen::VectorXd>& starts, bool thorough) {
-    return attempt.looks ? search_by_looks(attempt, starts, thorough)
-                         : search(attempt.against, attempt.problem, attempt.points_at(starts));
-  };
-  Approach best = from(attempt.starts, true);
-  if (!best.started) return best;
-  if (!attempt.null.looked) attempt.find_null(attempt.gain(best));
-  if (attempt.null.starts.empty() || !(attempt.null.most > kMoreThere * std::max(attempt.promised, attempt.gain(best))))
-    return best;
-  Approach other = from(attempt.null.starts, false);
-  return other.started && other.cost < best.cost ? other : best;
-}
 
 std::string unphysical(const Candidate& c) {
   const Eigen::VectorXd values = c.values(), std = c.std();
@@ -208,9 +80,9 @@ void measure(const Against& against, Fit f, Candidate& c) {
 bool look_only(const Attempt& attempt, Candidate& c) {
   const double p = c.null.p_of_look();
   if (p < kWorthASearch) return false;
-  const Approach a = nearly_nothing(attempt);
+  const Approach a = attempt.nearly_nothing();
   if (!a.started) return false;
-  measure(attempt.against, fit_at(attempt.problem, a), c);
+  measure(attempt.against(), fit_at(attempt.problem(), a), c);
   if (!c.tried) return false;
   c.fit_gain = c.null.most;
   c.p = p;
@@ -261,21 +133,19 @@ Candidate try_effect(const Addition& addition, const Against& against) {
   const Eigen::Index settled = static_cast<Eigen::Index>(model.parameters().size());
   model.additions.push_back(addition);
   FitProblem problem(model, against.bench.fit, settled);
-  Attempt attempt{against, problem, Looks::make(problem, against.before.fit), {}, {}, 0.0};
-  for (const auto& values : addition.effect->starts(addition.situation))
-    attempt.starts.push_back(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  Attempt attempt(against, problem);
   if (against.near_noise) {
     attempt.find_null(0.0);
-    c.null = attempt.null;
+    c.null = attempt.null();
     if (c.null.looked && look_only(attempt, c)) return c;
   }
-  const Approach best = search_all(attempt);
+  const Approach best = attempt.search_all();
   if (!best.started) {
     c.reason = "could not be fitted: the model with it can't be computed at any start";
     return c;
   }
-  c.null = std::move(attempt.null);
-  c.approached = attempt.looks && attempt.gain(best) >= kKept * attempt.promised;
+  c.null = std::move(attempt.null());
+  c.approached = attempt.kept(best);
   measure(against, fit_at(problem, best), c);
   c.with.fit.jacobian.resize(0, 0);  // as many as there are candidates: it is formed again where it is needed
   return c;

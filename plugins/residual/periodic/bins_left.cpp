@@ -1,11 +1,11 @@
 #include "periodic/bins_left.hpp"
 
 #include <algorithm>
-#include <bodeflow/numerics/fft.hpp>
 #include <cmath>
 
 #include "model/place_scales.hpp"
 #include "model/simulate.hpp"
+#include "periodic/fourier.hpp"
 #include "periodic/periodic_prediction.hpp"
 #include "sampled/record_spectra.hpp"
 
@@ -36,13 +36,9 @@ std::vector<double> peaks(const PeriodicRecord& r, const Eigen::VectorXcd& resid
 
 /// The residual over the steady periods of the record, with the samples that its band needs.
 Eigen::VectorXd course(const PeriodicRecord& r, const Eigen::VectorXcd& residual) {
-  const Eigen::Index samples = 2 * r.bins();
-  Eigen::VectorXcd full = Eigen::VectorXcd::Zero(samples);
-  for (Eigen::Index l = 1; l < r.bins(); ++l) {
-    full[l] = residual[l] * static_cast<double>(samples);
-    full[samples - l] = std::conj(full[l]);
-  }
-  return numerics::inverse_dft(full).real();
+  Eigen::VectorXcd lines = residual;
+  lines[0] = 0.0;
+  return signal_of(lines, 2 * r.bins());
 }
 
 void say_missing(const PeriodicRecord& r, const JointModel& base, const Eigen::VectorXd& values, const Eigen::VectorXcd& residual,

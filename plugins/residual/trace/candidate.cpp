@@ -76,6 +76,14 @@ void measure(const Against& against, Fit f, Candidate& c) {
   c.added_share = c.share - share_of(select.gain(against.original_select, before.select.residual));
 }
 
+/// That of its own parameters beside the settled ones, about where it stands. The model has to live as long.
+FitProblem own_problem(const JointModel& model, const Against& against, const Candidate& c) {
+  const auto own = static_cast<Eigen::Index>(c.addition.parameters.size());
+  FitProblem problem(model, against.bench.fit, static_cast<Eigen::Index>(model.parameters().size()) - own);
+  problem.bound_base(c.with.fit.at);
+  return problem;
+}
+
 /// The candidate where the linear look finds most, if that is no more than chance finds; false else.
 bool look_only(const Attempt& attempt, Candidate& c) {
   const double p = c.null.p_of_look();
@@ -155,9 +163,7 @@ void carry_over(const Against& against, Candidate& c) {
   if (!c.tried || !c.on_parts) return;
   c.on_parts = false;
   const JointModel model = c.with.fit.model;
-  const auto own = static_cast<Eigen::Index>(c.addition.parameters.size());
-  FitProblem problem(model, against.bench.fit, static_cast<Eigen::Index>(model.parameters().size()) - own);
-  problem.bound_base(c.with.fit.at);
+  FitProblem problem = own_problem(model, against, c);
   Approach a = approach_from(problem, c.with.fit.at, against.before.fit.jacobian);
   approach(problem, kStepsCarriedOver, kLeastFallOfCost, false, a);
   if (!a.started) {
@@ -174,9 +180,7 @@ void carry_over(const Against& against, Candidate& c) {
 void go_on(const Against& against, Candidate& c) {
   if (!c.tried || c.approached || c.with.fit.polished) return;
   const JointModel model = c.with.fit.model;
-  const auto own = static_cast<Eigen::Index>(c.addition.parameters.size());
-  FitProblem problem(model, against.bench.fit, static_cast<Eigen::Index>(model.parameters().size()) - own);
-  problem.bound_base(c.with.fit.at);
+  FitProblem problem = own_problem(model, against, c);
   Approach a = approach_from(problem, c.with.fit.at, against.before.fit.jacobian);
   approach(problem, kMoreSteps, kLeastFallOfCost, true, a);
   if (!a.started || !(a.cost < c.with.fit.chi2)) return;

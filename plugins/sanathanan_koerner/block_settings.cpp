@@ -31,7 +31,7 @@ std::optional<Eigen::Index> read_order(const std::string& text) {
 
 }  // namespace
 
-void describe_selection(Describe& d) {
+void describe_lines(Describe& d) {
   d.parameter("inputs", std::vector<std::string>{}).doc("names of the inputs of the model; default: all");
   d.parameter("outputs", std::vector<std::string>{}).doc("names of the outputs of the model; default: all");
   d.parameter("band", "").doc("frequencies that are fitted, as 1 Hz:50 Hz; default: all lines");
@@ -40,6 +40,10 @@ void describe_selection(Describe& d) {
       .doc(
           "of a line: 1, 1/|G|, or one over the standard deviation of G; auto: the last where the response has it, else the "
           "first");
+}
+
+void describe_selection(Describe& d) {
+  describe_lines(d);
   d.parameter("tier_band", "").doc("frequencies with full weight, as 1 Hz:50 Hz; the others weigh less");
   d.parameter("tier_below", 0.1).unit("1").range(0, 1).doc("weight of the lines below tier_band");
   d.parameter("tier_above", 1e-4).unit("1").range(0, 1).doc("weight of the lines above tier_band");

@@ -10,7 +10,9 @@
 /// Parameters that the blocks of the family share.
 namespace bodeflow::sanathanan_koerner {
 
-/// inputs, outputs, band, weighting, tiers.
+/// inputs, outputs, band, weighting.
+void describe_lines(Describe& d);
+/// These and the tiers.
 void describe_selection(Describe& d);
 Selection read_selection(const Parameters& p);
 Weighting read_weighting(const Parameters& p);

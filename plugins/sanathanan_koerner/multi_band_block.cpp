@@ -53,14 +53,7 @@ void MultiBandBlock::describe(Describe& d) {
   d.parameter("iteration_weight", "denominator")
       .choices({"denominator", "square_root"})
       .doc("of an iterate: 1/|d| of the one before, or Jue's 1/sqrt|d|");
-  d.parameter("inputs", std::vector<std::string>{}).doc("names of the inputs of the model; default: all");
-  d.parameter("outputs", std::vector<std::string>{}).doc("names of the outputs of the model; default: all");
-  d.parameter("band", "").doc("frequencies that are fitted, as 1 Hz:50 Hz; default: all lines");
-  d.parameter("weighting", "auto")
-      .choices({"auto", "absolute", "relative", "variance"})
-      .doc(
-          "of a line: 1, 1/|G|, or one over the standard deviation of G; auto: the last where the response has it, else the "
-          "first");
+  describe_lines(d);
   d.parameter("weight_below", 0.1).unit("1").range(0, 1).doc("of the lines below a band");
   d.parameter("weight_above", 1e-4).unit("1").range(0, 1).doc("of the lines above a band");
 }

@@ -1,5 +1,6 @@
 #include "arnoldi.hpp"
 
+#include <bodeflow/numerics/products.hpp>
 #include <cmath>
 #include <string>
 
@@ -25,8 +26,8 @@ Expected<Basis> arnoldi(const Eigen::VectorXcd& z, const Eigen::VectorXd& weight
     u = multiplied(z, b.vectors.col(j));
     const auto known = b.vectors.leftCols(j + 1);
     for (int pass = 0; pass < 2; ++pass) {
-      h.head(j + 1).noalias() = known.transpose() * u;
-      u.noalias() -= known * h.head(j + 1);
+      h.head(j + 1) = numerics::transposed_times(known, u);
+      numerics::subtract_product(u, known, h.head(j + 1));
       b.hessenberg.col(j).head(j + 1) += h.head(j + 1);
     }
     const double rest = u.norm();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <bodeflow/numerics/stacked_qr.hpp>
 #include <vector>
 
 #include "data.hpp"
@@ -10,8 +11,8 @@ namespace bodeflow::sanathanan_koerner {
 /// The columns that the numerators of all channels are made of, and what is left of a channel when they have taken their part.
 class Elimination {
  public:
-  /// columns: weighted basis functions at the lines, stacked (2 lines x n), for the weights `shared`; orthonormal: they are. A
-  /// channel with other weights has its own copy, made orthonormal by QR.
+  /// columns: weighted basis functions at the lines, stacked (2 lines x n), for the weights `shared`; orthonormal: they are. They
+  /// must outlive this. A channel with other weights, or columns that are not orthonormal, are factorised.
   Elimination(const Data& data, const Eigen::VectorXd& shared, const Eigen::MatrixXd& columns, bool orthonormal);
 
   /// What is left of some stacked columns, which must have the weights of the channel.
@@ -22,11 +23,11 @@ class Elimination {
   Eigen::VectorXd ratio(Eigen::Index channel) const;
 
  private:
-  std::size_t at(Eigen::Index channel) const { return spans_.size() == 1 ? 0 : static_cast<std::size_t>(channel); }
+  const numerics::StackedQr& factor(Eigen::Index channel) const;
 
-  Eigen::MatrixXd ratios_;                  // lines x 1 or channels
-  std::vector<Eigen::MatrixXd> spans_;      // orthonormal
-  std::vector<Eigen::MatrixXd> triangles_;  // span * triangle = the channel's columns; empty: the identity
+  Eigen::MatrixXd ratios_;                    // lines x 1 or channels
+  Eigen::Map<const Eigen::MatrixXd> span_;    // the columns
+  std::vector<numerics::StackedQr> factors_;  // of the channels' columns; empty: the span is orthonormal
 };
 
 /// The weights that all channels are given first: the root mean square over the channels.

@@ -155,7 +155,7 @@ TEST_CASE("polynomials: given where they reproduce the response and left out whe
   CHECK(std::abs(tf->numerator[2] - 2.0) < 1e-7);
 
   const Data wide = test::modal_data("ex1_system.csv", 1, 1, test::geometric(0.5, 2000.0, 400));
-  const auto high = identify(wide, of_order(60));
+  const auto high = identify(wide, of_order(100));
   REQUIRE(high);
   CHECK_FALSE(faithful_polynomials(high->system, high->poles, wide.omega_rad_s, high->response));
 }

@@ -32,19 +32,14 @@ std::string settings_error(const FrequencyPointSettings& s) {
   return {};
 }
 
-/// How many samples a residual counts for less: sum over all lags of the squared correlation that the filter gives white noise.
-double correlation_of(numerics::NarrowBandPass filter) {
-  std::vector<double> h;
-  const int length = std::min(4096, static_cast<int>(std::ceil(16.0 * filter.sections() / (1.0 - filter.radius()))));
-  for (int k = 0; k < length; ++k) h.push_back(filter.step(k == 0 ? 1.0 : 0.0));
-  double sum = 0.0, power = 0.0;
+/// Autocorrelation at lags 0 .. , 1 at lag 0, of white noise behind h.
+std::vector<double> correlation(const std::vector<double>& h) {
+  std::vector<double> r(h.size());
   for (std::size_t lag = 0; lag < h.size(); ++lag) {
-    double r = 0.0;
-    for (std::size_t k = lag; k < h.size(); ++k) r += h[k] * h[k - lag];
-    if (lag == 0) power = r;
-    sum += (lag == 0 ? 1.0 : 2.0) * (r / power) * (r / power);
+    for (std::size_t k = lag; k < h.size(); ++k) r[lag] += h[k] * h[k - lag];
   }
-  return sum;
+  for (std::size_t lag = r.size(); lag-- > 0;) r[lag] /= r[0];
+  return r;
 }
 
 }  // namespace
@@ -63,8 +58,8 @@ FrequencyPoint::FrequencyPoint(const FrequencyPointSettings& s, const numerics::
   ud_ = UdLeastSquares(parameter_count(), p0);
   full_ = FullLeastSquares(parameter_count(), p0);
   for (std::size_t i = 0; i < z_back_.size(); ++i) z_back_[i] = std::polar(1.0, -w_h * static_cast<double>(i));
+  instrument_step_ = static_cast<std::size_t>(std::clamp(std::round(2.0 / w_h), 1.0, 4.0));
   z_delay_ = std::polar(1.0, -w_h * s.delay);
-  correlation_ = correlation_of(filter);
 }
 
 void FrequencyPoint::step(const Sample& sample) {
@@ -104,7 +99,8 @@ void FrequencyPoint::update(double y_f) {
   if (directional_or_iv()) {
     const double error = y_f - full_.prediction(phi);
     Regressor zeta{};
-    for (std::size_t i = 0; i < static_cast<std::size_t>(parameter_count()); ++i) zeta[i] = reference_past_[i + 1];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(parameter_count()); ++i)
+      zeta[i] = reference_past_[1 + i * instrument_step_];
     const double scale = settings_.method == Method::directional ? full_.measure_directional(phi, settings_.forgetting)
                                                                  : full_.measure(phi, zeta, settings_.forgetting);
     full_.correct(clipped(error, std::sqrt(scale)));
@@ -150,6 +146,27 @@ void FrequencyPoint::evaluate() {
   if (size > kLeastDenominator) response_ = z_delay_ * b * std::conj(a) / size;
 }
 
+/// Over how many samples residuals and regressors stay alike: sum over all lags of their correlations' product. White noise v at
+/// the output makes the residual A H v, the regressors have the band of H.
+double FrequencyPoint::shared_correlation() const {
+  numerics::NarrowBandPass filter = filter_y_;
+  filter.reset();
+  const int length = std::min(1024, static_cast<int>(std::ceil(8.0 * filter.sections() / (1.0 - filter.radius()))));
+  std::vector<double> h, residual;
+  for (int k = 0; k < length; ++k) h.push_back(filter.step(k == 0 ? 1.0 : 0.0));
+  const Regressor& theta = parameters();
+  for (std::size_t k = 0; k < h.size(); ++k) {
+    residual.push_back(h[k]);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(settings_.denominator) && i < k; ++i) {
+      residual[k] += theta[i] * h[k - i - 1];
+    }
+  }
+  const std::vector<double> of_h = correlation(h), of_residual = correlation(residual);
+  double sum = 1.0;
+  for (std::size_t lag = 1; lag < h.size(); ++lag) sum += 2.0 * of_h[lag] * of_residual[lag];
+  return std::max(sum, 0.0);
+}
+
 double FrequencyPoint::variance() const {
   if (updates_ == 0) return 0.0;
   const Regressor& theta = parameters();
@@ -167,7 +184,7 @@ double FrequencyPoint::variance() const {
       sum += (slope[i] * std::conj(slope[k])).real() * p;
     }
   }
-  return sigma_squared_ * correlation_ * weight_squares_ / weight_sum_ * sum;
+  return sigma_squared_ * shared_correlation() * weight_squares_ / weight_sum_ * sum;
 }
 
 }  // namespace bodeflow::adaptive_control

@@ -14,6 +14,10 @@ double FullLeastSquares::measure(const Regressor& phi, const Regressor& zeta, do
   for (std::size_t i = 0; i < n_; ++i) denominator += phi[i] * p_zeta[i];
   gain_ = {};
   if (!(denominator > 0.5 * lambda)) return lambda;
+  instrumental_ = true;
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t k = 0; k < n_; ++k) instruments_[i][k] = lambda * instruments_[i][k] + zeta[i] * zeta[k];
+  }
   for (std::size_t i = 0; i < n_; ++i) gain_[i] = p_zeta[i] / denominator;
   for (std::size_t i = 0; i < n_; ++i) {
     for (std::size_t k = 0; k < n_; ++k) p_[i][k] = (p_[i][k] - gain_[i] * phi_p[k]) / lambda;
@@ -37,6 +41,15 @@ double FullLeastSquares::measure_directional(const Regressor& phi, double lambda
     for (std::size_t k = 0; k < n_; ++k) p_[i][k] -= factor * p_phi[i] * p_phi[k];
   }
   return 1.0 + r;
+}
+
+double FullLeastSquares::covariance(std::size_t i, std::size_t k) const {
+  if (!instrumental_) return p_[i][k];
+  double sum = 0.0;
+  for (std::size_t a = 0; a < n_; ++a) {
+    for (std::size_t b = 0; b < n_; ++b) sum += p_[i][a] * instruments_[a][b] * p_[k][b];
+  }
+  return sum;
 }
 
 bool FullLeastSquares::bound(double limit) {

@@ -109,12 +109,14 @@ class FullLeastSquares {
   bool bound(double limit);
 
   const Regressor& theta() const { return theta_; }
-  double covariance(std::size_t i, std::size_t k) const { return 0.5 * (p_[i][k] + p_[k][i]); }
+  /// P, or with instruments P (sum zeta zeta') P': the covariance of theta over the noise's variance.
+  double covariance(std::size_t i, std::size_t k) const;
 
  private:
   std::size_t n_ = 0;
   Regressor theta_{}, gain_{};
-  std::array<Regressor, kMostParameters> p_{};
+  std::array<Regressor, kMostParameters> p_{}, instruments_{};
+  bool instrumental_ = false;
 };
 
 }  // namespace bodeflow::adaptive_control

@@ -34,6 +34,7 @@ void Prbs::describe(Describe& d) {
   d.parameter("inverse_repeat", false).doc("invert every other bit");
   d.parameter("amplitude", 1.0).unit("").live().doc("half of the distance of the levels");
   d.parameter("offset", 0.0).unit("").live().doc("middle of the levels");
+  d.parameter("first_bit", std::int64_t{0}).range(0, 1e6).doc("bits of the sequence that are left out before the first sample");
   d.optional<std::int64_t>("periods").range(1, 1e6).doc("the stream ends after as many periods");
   d.stream_out(out).doc("one channel");
 }
@@ -44,6 +45,7 @@ void Prbs::configure(const Parameters& p) {
   bits_ = static_cast<int>(whole(p, "bits", kLeastBits, kMostBits));
   hold_ = whole(p, "hold", 1, 1'000'000);
   inverse_repeat_ = p.boolean("inverse_repeat");
+  first_bit_ = whole(p, "first_bit", 0, 1'000'000);
   const std::int64_t periods = p.has("periods") ? whole(p, "periods", 1, 1'000'000) : 0;
   if (periods > INT64_MAX / period()) fail(std::to_string(periods) + " periods have more samples than can be counted");
   length_ = periods > 0 ? periods * period() : -1;
@@ -55,7 +57,7 @@ void Prbs::resolve(Facts& f) {
   facts = source_facts(rate_, unit_, 1, length_);
   facts.notes["excitation.period"] = {static_cast<double>(period()) / rate_.hz()};
   if (period() > static_cast<std::int64_t>(kNotedPeriod)) return;
-  Bits state{ShiftRegister(bits_)};
+  Bits state = start();
   std::vector<double> samples(static_cast<std::size_t>(period()));
   for (double& value : samples) value = state.next(hold_, inverse_repeat_) ? high_ : low_;
   note_period(facts, samples);
@@ -75,7 +77,13 @@ void Prbs::change(const Parameters& p) {
   high_ = p.number("offset") + p.number("amplitude");
 }
 
-void Prbs::reset() { state_ = Bits{ShiftRegister(bits_)}; }
+void Prbs::reset() { state_ = start(); }
+
+Prbs::Bits Prbs::start() const {
+  Bits state{ShiftRegister(bits_)};
+  for (std::int64_t bit = 0; bit < first_bit_; ++bit) state.next(1, inverse_repeat_);
+  return state;
+}
 
 bool Prbs::Bits::next(std::int64_t hold, bool inverse_repeat) {
   if (held == 0) {

@@ -30,12 +30,14 @@ class Prbs final : public Block {
     bool next(std::int64_t hold, bool inverse_repeat);
   };
   std::int64_t period() const;
+  Bits start() const;
 
   Rate rate_;
   std::string unit_;
   int bits_ = kLeastBits;
   std::int64_t hold_ = 1;
   bool inverse_repeat_ = false;
+  std::int64_t first_bit_ = 0;
   std::int64_t length_ = -1;
   double low_ = -1.0, high_ = 1.0;
   Bits state_;

@@ -119,3 +119,12 @@ TEST_CASE("a binary sequence tells its lines") {
   REQUIRE(notes.at("excitation.frequencies").size() == 15);
   for (const double amplitude : notes.at("excitation.amplitudes")) CHECK(amplitude == Approx(2 * std::sqrt(32.0) / 31));
 }
+
+TEST_CASE("prbs: with first_bit the sequence begins as many bits later") {
+  LoadedBlock whole("generators.prbs"), later("generators.prbs");
+  for (LoadedBlock* block : {&whole, &later})
+    block->set("sample_rate", 100.0).set("bits", std::int64_t{5}).set("hold", std::int64_t{3});
+  later.set("first_bit", std::int64_t{4});
+  const auto all = whole.start().run(93)[0], rest = later.start().run(60)[0];
+  CHECK(std::vector<double>(all.begin() + 12, all.begin() + 72) == rest);
+}

@@ -1,5 +1,6 @@
 #include "notes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bodeflow::filters {
@@ -25,6 +26,18 @@ Notes added(const Notes& a, const Notes& b) {
     }
   }
   return sum;
+}
+
+Notes filtered(const Notes& notes, double settling_s) {
+  Notes kept;
+  for (const char* name : {"excitation.period", "excitation.experiment", "excitation.frequencies", "plant.modes"}) {
+    const auto found = notes.find(name);
+    if (found != notes.end()) kept.insert(*found);
+  }
+  const auto before = notes.find("plant.settling_time");
+  const double least = before == notes.end() || before->second.empty() ? 0.0 : before->second[0];
+  kept["plant.settling_time"] = {std::max(settling_s, least)};
+  return kept;
 }
 
 }  // namespace bodeflow::filters

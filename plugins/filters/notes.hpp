@@ -13,4 +13,8 @@ Notes scaled(Notes notes, double factor);
 /// excitation of two periods) holds where they agree.
 Notes added(const Notes& a, const Notes& b);
 
+/// Notes of a stream behind a filter that changes amplitudes and colours noise: the times and lines of the excitation stay, what
+/// is known of the plant too, with at least that settling time.
+Notes filtered(const Notes& notes, double settling_s);
+
 }  // namespace bodeflow::filters

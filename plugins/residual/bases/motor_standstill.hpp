@@ -19,6 +19,7 @@ class MotorStandstill final : public BaseModel {
   std::vector<FitParameter> parameters() const override;
   std::vector<Place> places() const override;
   Timing timing() const override;
+  std::string response_unit() const override { return "S"; }
   std::vector<std::string> conventions() const override;
   std::vector<std::vector<double>> starts(std::span<const MeasuredResponse> measured) const override;
   bool state_space(const double* v, const double* known, LinearPlant& plant) const override;

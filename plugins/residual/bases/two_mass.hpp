@@ -18,6 +18,7 @@ class TwoMass final : public BaseModel {
   std::vector<FitParameter> parameters() const override;
   std::vector<Place> places() const override;
   Timing timing() const override { return timing_; }
+  std::string response_unit() const override { return std::string(speed_ ? "rad/s" : "rad") + (current_ ? "/A" : "/(N*m)"); }
   std::vector<std::string> conventions() const override;
   std::vector<std::vector<double>> starts(std::span<const MeasuredResponse> measured) const override;
   bool state_space(const double* v, const double* known, LinearPlant& plant) const override;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <bodeflow/declarations.hpp>
+#include <bodeflow/units.hpp>
 #include <cmath>
 #include <map>
 
 #include "periodic/periodic_measurement.hpp"
+#include "records/response_units.hpp"
 #include "response/hold_out_bands.hpp"
 #include "response/response_measurement.hpp"
 #include "sampled/sampled_measurement.hpp"
@@ -18,7 +20,12 @@ using records::ResponseData;
 
 constexpr Eigen::Index kLeastPeriods = 2;
 constexpr Eigen::Index kLeastSamples = 200;
+// Samples of a record over time that is fitted or selects: spectra of more take minutes.
+constexpr Eigen::Index kLongest = 131072;
 constexpr double kBandOctaves = 1.0 / 3.0;
+// Rows of a record over time that is fitted or selects: more take time and change no verdict, as what is not modelled outweighs
+// the noise by far there. The one that tells the error is taken whole.
+constexpr Eigen::Index kMostRows = 12288;
 
 bool repeats(const Given& g) {
   const auto* r = std::get_if<Recording>(&g);
@@ -52,6 +59,15 @@ Expected<std::vector<Recording>> split_periods(const Recording& r, std::size_t p
     at += count;
   }
   return all;
+}
+
+/// The middle of a record that is longer than it need be.
+void shorten(Given& g, const std::string& name, std::vector<std::string>& notes) {
+  const auto* r = std::get_if<Recording>(&g);
+  if (r == nullptr || r->samples() <= kLongest) return;
+  notes.push_back("record '" + name + "' has " + std::to_string(r->samples()) + " samples, of which the " +
+                  std::to_string(kLongest) + " in its middle are looked at");
+  g = part_of(*r, (r->samples() - kLongest) / 2, kLongest, 0);
 }
 
 Expected<std::vector<Recording>> split_time(const Recording& r, std::size_t parts) {
@@ -139,16 +155,35 @@ class Known {
   std::vector<std::string> used_;
 };
 
+/// Why a recording is of something else than the base model; "" where it is not, or units are not given.
+std::string wrong_units(const Recording& r, const BaseModel& base) {
+  const std::string needed = base.response_unit(), &in = r.input_signals.units[0], &out = r.output_signals.units[0];
+  for (const std::string& unit : {needed, in, out})
+    if (unit.empty() || unit == "1" || !parse_unit(unit)) return "";
+  const std::string ratio = records::ratio_unit(out, in);
+  if (!parse_unit(ratio) || same_dimension(ratio, needed)) return "";
+  return "'" + r.output_signals.names[0] + "' is in " + out + " and '" + r.input_signals.names[0] + "' in " + in +
+         "; the base model needs output over input in " + needed + ": check the signals and what is declared";
+}
+
 Expected<std::shared_ptr<const Measurement>> measurement_of(const Given& g, const std::string& name, Engine engine,
-                                                            const BaseModel& base, Known& known, double segment_s) {
+                                                            const BaseModel& base, Known& known, const SampledOptions& options) {
   auto made = [&]() -> Expected<std::shared_ptr<const Measurement>> {
     if (const auto* response = std::get_if<ResponseData>(&g)) return response_measurement(*response, name, known.of(name), base);
     const Recording& r = std::get<Recording>(g);
+    if (const std::string wrong = wrong_units(r, base); !wrong.empty()) return refused(wrong);
     if (engine == Engine::periodic) return periodic_measurement(r, name, known.of(name), base);
-    return sampled_measurement(r, name, known.of(name), base, {segment_s});
+    return sampled_measurement(r, name, known.of(name), base, options);
   }();
   if (!made) return refused("record '" + name + "': " + made.error().text);
   return made;
+}
+
+GivenRecords with_short_records(GivenRecords g, Engine engine) {
+  if (engine != Engine::sampled) return g;
+  for (std::size_t n = 0; n < g.fit.size(); ++n) shorten(g.fit[n], "fit " + std::to_string(n + 1), g.notes);
+  shorten(*g.select, "select", g.notes);
+  return g;
 }
 
 }  // namespace
@@ -169,7 +204,7 @@ Expected<GivenRecords> with_all_parts(GivenRecords g, Engine engine) {
     g.notes.push_back("record 'fit " + std::to_string(g.fit.size() + 1) + "' is not fitted but serves as '" + name + "'");
   }
   const std::size_t parts = 1 + (g.select ? 0 : 1) + (g.test ? 0 : 1);
-  if (parts == 1) return g;
+  if (parts == 1) return with_short_records(std::move(g), engine);
   auto pieces = split(g.fit.back(), parts, engine);
   if (!pieces) return refused("record 'fit " + std::to_string(g.fit.size()) + "': " + pieces.error().text);
   const std::string taken = how(g.fit.back(), engine),
@@ -181,21 +216,21 @@ Expected<GivenRecords> with_all_parts(GivenRecords g, Engine engine) {
     *part = std::move((*pieces)[next++]);
     g.notes.push_back("record '" + std::string(name) + from);
   }
-  return g;
+  return with_short_records(std::move(g), engine);
 }
 
 Expected<TraceData> measurements_of(const GivenRecords& g, Engine engine, const BaseModel& base,
-                                    const std::vector<std::string>& statements, double segment_s) {
+                                    const std::vector<std::string>& statements, double segment_s, double test_segment_s) {
   Known known(base, statements);
   TraceData data;
   for (std::size_t n = 0; n < g.fit.size(); ++n) {
-    auto m = measurement_of(g.fit[n], "fit " + std::to_string(n + 1), engine, base, known, segment_s);
+    auto m = measurement_of(g.fit[n], "fit " + std::to_string(n + 1), engine, base, known, {segment_s, kMostRows});
     if (!m) return tl::unexpected(m.error());
     data.fit.push_back(std::move(*m));
   }
-  auto select = measurement_of(*g.select, "select", engine, base, known, segment_s);
+  auto select = measurement_of(*g.select, "select", engine, base, known, {segment_s, kMostRows});
   if (!select) return tl::unexpected(select.error());
-  auto test = measurement_of(*g.test, "test", engine, base, known, segment_s);
+  auto test = measurement_of(*g.test, "test", engine, base, known, {test_segment_s, 0});
   if (!test) return tl::unexpected(test.error());
   data.select = std::move(*select);
   data.test = std::move(*test);

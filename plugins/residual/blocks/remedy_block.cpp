@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bodeflow/parts.hpp>
+#include <limits>
 
+#include "model/simulate.hpp"
 #include "trace/told_model.hpp"
 
 namespace bodeflow::residual {
@@ -10,6 +13,19 @@ namespace {
 
 constexpr std::array kKnobs{RemedyBlock::delay, RemedyBlock::dead_time, RemedyBlock::offset, RemedyBlock::friction};
 static_assert(kKnobs.size() == std::size(kRemedies));
+
+/// The output of the model by a constant input; not finite where it has none, or the base model is not there.
+double steady_gain(const ToldModel& told, const Parts& parts) {
+  const auto base = parts.base_model(told.base, told.declarations);
+  const std::vector<double> known(base->known().size());
+  const Eigen::VectorXd values =
+      Eigen::Map<const Eigen::VectorXd>(told.after.data(), static_cast<Eigen::Index>(told.after.size()));
+  return plant_response(*base, values, known, 0.0)(0, 0).real();
+}
+
+bool has(const ToldModel& told, const std::string& name) {
+  return std::any_of(told.effects.begin(), told.effects.end(), [&](const NamedEffect& e) { return e.name == name; });
+}
 
 }  // namespace
 
@@ -19,7 +35,8 @@ void RemedyBlock::describe(Describe& d) {
       "Each output sends one parameter_change: the found parameter of that effect times its factor, or 0 where the effect was "
       "not "
       "found. delay: the command is sent earlier. dead_time: pulses are made longer or shorter by the sign of the current. "
-      "offset: it is taken off the measurement. friction: a torque by the sign of the speed. At `out` stands whether there is "
+      "offset: it is taken off the measurement; one of the input is, behind the plant's steady gain. friction: a torque by the "
+      "sign of the speed. At `out` stands whether there is "
       "anything to switch on, for the `when` of the phase that measures again. Where several effects could not be told apart the "
       "first is remedied.");
   d.parameter("can", std::vector<std::string>{})
@@ -58,12 +75,15 @@ void RemedyBlock::receive(int, const RecordView& record, Io& io) {
   std::string words;
   for (std::size_t k = 0; k < knobs_.size(); ++k) {
     const Knob& knob = knobs_[k];
-    std::optional<double> found;
-    if (knob.there) found = remedy_value(kRemedies[k], told.effects, knob.factor, knob.place);
-    const double value = found.value_or(0.0);
+    std::optional<Remedied> found;
+    if (knob.there) {
+      const double gain = has(told, kRemedies[k].twin) ? steady_gain(told, parts()) : std::numeric_limits<double>::quiet_NaN();
+      found = remedied(kRemedies[k], told.effects, knob.factor, knob.place, gain);
+    }
+    const double value = found ? found->value : 0.0;
     io.emit(kKnobs[k], RecordBuilder("parameter_change").set("parameter", knob.parameter).set("value", value));
     if (!found) continue;
-    effects.emplace_back(kRemedies[k].effect);
+    effects.push_back(found->effect);
     values.push_back(value);
     units.push_back(knob.unit);
     words += (words.empty() ? "" : ", ") + remedy_words(kRemedies[k], value, knob.unit);

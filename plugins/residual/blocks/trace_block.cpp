@@ -116,6 +116,13 @@ void TraceBlock::describe(Describe& d) {
   d.optional<double>("segment").unit("s").above(0.0).doc(
       "of records over time: length of the parts that are simulated from a state of their own; without it the whole record where "
       "the plant settles, short parts where it integrates; longer than the record: the whole record");
+  d.optional<double>("test_segment")
+      .unit("s")
+      .above(0.0)
+      .doc(
+          "the same for the record at `test` alone; without it that of `segment`. Effects are told from short parts, and an "
+          "error that "
+          "grows with the time, as of a simulated position, from a long one");
   d.parameter("alpha", 0.01)
       .unit("1")
       .range(1e-6, 0.2)
@@ -143,6 +150,7 @@ void TraceBlock::configure(const Parameters& p) {
   const std::string& engine = p.text("engine");
   engine_ = engine == "periodic" ? Engine::periodic : engine == "sampled" ? Engine::sampled : Engine::automatic;
   segment_s_ = p.has("segment") ? p.number("segment") : 0.0;
+  test_segment_s_ = p.has("test_segment") ? p.number("test_segment") : segment_s_;
   settings_.alpha = p.number("alpha");
   settings_.share = p.number("share");
   settings_.most_effects = static_cast<std::size_t>(p.integer("most_effects"));
@@ -176,7 +184,7 @@ void TraceBlock::finish(Io& io) {
     whole = with_all_parts(given_, engine);
   }
   const GivenRecords records = valid(std::move(whole));
-  const TraceData data = valid(measurements_of(records, engine, *made, known_, segment_s_));
+  const TraceData data = valid(measurements_of(records, engine, *made, known_, segment_s_, test_segment_s_));
   TraceSettings settings = settings_;
   settings.known = choice.all();
   settings.progress = [this](const std::string& text) { log_info(text); };

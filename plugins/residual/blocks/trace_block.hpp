@@ -31,7 +31,7 @@ class TraceBlock final : public Block {
   std::string base_;
   std::vector<std::string> declare_, effects_, without_, known_;
   Engine engine_ = Engine::automatic;
-  double segment_s_ = 0.0;
+  double segment_s_ = 0.0, test_segment_s_ = 0.0;
   TraceSettings settings_;
   GivenRecords given_;
   std::optional<RecordBuilder> model_;

@@ -1,5 +1,7 @@
 #include "effects/interharmonic.hpp"
 
+#include <limits>
+
 #include "effects/mains.hpp"
 #include "effects/words.hpp"
 
@@ -14,8 +16,10 @@ void Interharmonic::describe(DescribeEffect& effect) {
       .acts(Acts::tone);
 }
 
-std::vector<FitParameter> Interharmonic::parameters(const Situation&) const {
-  return {positive("tone_frequency", "Hz").says("of the tone")};
+std::vector<FitParameter> Interharmonic::parameters(const Situation& s) const {
+  return {real("tone_frequency", "Hz", 0.1 / size_or_one(s.duration_s))
+              .between(0.0, std::numeric_limits<double>::infinity())
+              .says("of the tone")};
 }
 
 std::vector<std::vector<double>> Interharmonic::starts(const Situation& s) const {

@@ -95,6 +95,7 @@ class Tester {
       mean += weight * chance;
       square += weight * chance * chance;
     }
+    if (!(mean > 0.0)) return ClassTest{"peak", multiple(highest), 0.0};
     const double spread = std::sqrt(std::log1p((square / (mean * mean) - 1.0) / parts));
     double p = 0.0;
     for (const auto& [at, weight] : kNormal)

@@ -7,6 +7,7 @@
 
 #include "periodic/bin_classes.hpp"
 #include "periodic/bins_left.hpp"
+#include "periodic/likely_input.hpp"
 #include "periodic/open_loop.hpp"
 #include "periodic/periodic_prediction.hpp"
 #include "periodic/tones.hpp"
@@ -64,6 +65,20 @@ class PeriodicMeasurement final : public Measurement {
   std::unique_ptr<const OpenLoop> open_loop(const JointModel& model, const Eigen::VectorXd& values,
                                             const Eigen::VectorXd& residual, const Addition& effect) const override {
     return periodic_open_loop(r_, model, values, residual, effect);
+  }
+
+  std::shared_ptr<const Measurement> with_likely_input(const JointModel& model, const Eigen::VectorXd& values) const override {
+    if (!(r_.input_variance.maxCoeff() > 0.0) || r_.input.cols() != 1) return nullptr;
+    auto likely = std::make_shared<PeriodicMeasurement>(*this);
+    if (!take_likely_input(model, values, likely->r_)) return nullptr;
+    return likely;
+  }
+
+  std::shared_ptr<const Measurement> with_input_noise(std::uint64_t draw, double sign) const override {
+    if (!(r_.input_variance.maxCoeff() > 0.0)) return nullptr;
+    auto noisy = std::make_shared<PeriodicMeasurement>(*this);
+    add_input_noise(draw, sign, noisy->r_);
+    return noisy;
   }
 
   std::vector<ClassTest> tests(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,

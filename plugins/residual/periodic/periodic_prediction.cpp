@@ -20,6 +20,8 @@ using Complex = std::complex<double>;
 // Values of a band-limited input for each sample: of a map, and of a simulation.
 constexpr int kFine = 4;
 constexpr int kFineSimulated = 2;
+// Values of an output for each sample that goes through a map with memory: it remembers peaks between the samples too.
+constexpr int kFineRemembered = 8;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 // A response that grows so much from the first line to this part of it is that of an integrator.
 constexpr double kNearDc = 1e-6, kIntegrates = 1e4;
@@ -63,7 +65,7 @@ class Predictor {
     Eigen::VectorXd y = simulated_ ? simulated_output() : linear_output();
     if (!y.allFinite()) return failed();
     for (std::size_t a = 0; a < model_.additions.size(); ++a)
-      if (model_.additions[a].what.acts == Acts::output) map_samples(a, r_.sample_time_s(), y);
+      if (model_.additions[a].what.acts == Acts::output) map_output(a, y);
     bins_of_output(y);
     if (signals_ && !simulated_) simulate_signals();
     return std::move(p_);
@@ -85,6 +87,14 @@ class Predictor {
       for (Eigen::Index n = 0; n < x.size(); ++n) addition.effect->map(p, x[n], 0.0, memory.data());
     for (Eigen::Index n = 0; n < x.size(); ++n)
       x[n] = addition.effect->map(p, x[n], timed ? static_cast<double>(n) * step_s : 0.0, memory.data());
+  }
+
+  void map_output(std::size_t a, Eigen::VectorXd& y) const {
+    const bool fine = periods_ == 1 && model_.additions[a].what.memory > 0;
+    if (!fine) return map_samples(a, r_.sample_time_s(), y);
+    Eigen::VectorXd between = signal_of(coefficients(y), y.size() * kFineRemembered);
+    map_samples(a, r_.sample_time_s() / kFineRemembered, between);
+    for (Eigen::Index n = 0; n < y.size(); ++n) y[n] = between[n * kFineRemembered];
   }
 
   /// The input behind the maps of Acts::input: samples of the period (or of all of the record), finer for a band-limited one.

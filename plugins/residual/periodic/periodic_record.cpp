@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "periodic/drift_free.hpp"
+#include "periodic/tone_free.hpp"
 #include "records/checksum.hpp"
 #include "statistics.hpp"
 
@@ -139,14 +140,19 @@ Eigen::VectorXd power_gain(const std::vector<InputChannel>& inputs, const Period
   return gain;
 }
 
-/// Adds what the noise of measured inputs makes of the output to the variances of the lines that drive the model.
+/// Sets the noise of measured inputs at the lines that drive the model, and adds what it makes of the output to their variances.
 void add_input_noise(const std::vector<InputChannel>& inputs, const std::vector<bool>& drives_all, PeriodicRecord& r) {
   const Eigen::VectorXd gain = power_gain(inputs, r);
+  r.input_variance = Eigen::MatrixXd::Zero(r.lines(), static_cast<Eigen::Index>(inputs.size()));
   for (Eigen::Index k = 0; k < r.lines(); ++k) {
     const Eigen::Index bin = k * r.periods;
     const bool always = k == 0 || r.kind[static_cast<std::size_t>(bin)] == Kind::excited;
-    for (std::size_t j = 0; j < inputs.size(); ++j)
-      if (inputs[j].noise && (always || drives_all[j])) r.variance[bin] += gain[k] * inputs[j].noise->at(r.frequency_hz[bin]);
+    for (std::size_t j = 0; j < inputs.size(); ++j) {
+      if (!inputs[j].noise || !(always || drives_all[j])) continue;
+      const double noise = inputs[j].noise->at(r.frequency_hz[bin]);
+      r.input_variance(k, static_cast<Eigen::Index>(j)) = noise;
+      r.variance[bin] += gain[k] * noise;
+    }
   }
 }
 
@@ -265,7 +271,8 @@ Expected<PeriodicRecord> periodic_record(const records::Recording& recording, st
   if (!(s.between_power.mean() > kRounding * kRounding * s.lines.cwiseAbs2().maxCoeff())) {
     return refused("output '" + r.output_name + "' holds no noise between the lines, so there is nothing to judge a residual by");
   }
-  auto floor = FloorOfBins::make(s.between_hz, s.between_power);
+  const Eigen::VectorXd calm_power = tone_free_power(bins.head((lines - 1) * r.periods + 1), r.periods, count);
+  auto floor = FloorOfBins::make(s.between_hz, calm_power);
   if (!floor) return refused("output '" + r.output_name + "': " + floor.error().text);
   const auto calm = drift_free_floor(recording.output.col(0).segment(begin, count), r.periods, lines, r.line_hz());
   r.floor = calm ? lower_floor(*floor, *calm, s.between_hz) : *floor;

@@ -26,13 +26,14 @@ struct PeriodicRecord {
   Eigen::Index skip = 0;     ///< periods before them
   std::string checksum;      ///< of the samples used
   std::vector<double> known;
-  Eigen::MatrixXd input;         ///< N x inputs: mean period that drives the model
-  Eigen::MatrixXcd input_lines;  ///< lines x inputs, as measured
-  Eigen::VectorXcd output;       ///< bins
-  std::vector<Kind> kind;        ///< a bin each
-  Eigen::VectorXd frequency_hz;  ///< a bin each
-  Eigen::VectorXd variance;      ///< E|dY|^2 a bin, with what the noise of measured inputs adds at lines that drive the model
-  FloorOfBins floor;             ///< of `output`
+  Eigen::MatrixXd input;           ///< N x inputs: mean period that drives the model
+  Eigen::MatrixXcd input_lines;    ///< lines x inputs, as measured
+  Eigen::VectorXcd output;         ///< bins
+  std::vector<Kind> kind;          ///< a bin each
+  Eigen::VectorXd frequency_hz;    ///< a bin each
+  Eigen::VectorXd variance;        ///< E|dY|^2 a bin, with what the noise of measured inputs adds at lines that drive the model
+  Eigen::MatrixXd input_variance;  ///< lines x inputs: E|dU|^2 of the noise with which a measured input drives the model
+  FloorOfBins floor;               ///< of `output`
   double input_rms = 0.0, input_peak = 0.0, output_rms = 0.0, output_peak = 0.0;  ///< of the mean period, first input
 
   Eigen::Index bins() const { return output.size(); }

@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <numbers>
+#include <complex>
+
+#include "periodic/leakage.hpp"
 
 namespace bodeflow::residual {
 namespace {
@@ -11,13 +13,6 @@ using Complex = std::complex<double>;
 
 // A tone that shows between the lines by less than this part of its size stands on a line.
 constexpr double kOnLine = 0.02;
-
-/// The Fourier coefficient of exp(j 2 pi f n / rate) over `samples` at a distance of x = f / rate - l / samples.
-Complex leaked(double x, double samples) {
-  const double half = std::numbers::pi * x, sine = std::sin(half);
-  if (std::abs(sine) < 1e-15) return 1.0;
-  return std::polar(std::sin(half * samples) / (samples * sine), half * (samples - 1.0));
-}
 
 Eigen::VectorXcd bins_of_tone(const PeriodicRecord& r, double frequency_hz, Complex amplitude) {
   const double samples = static_cast<double>(r.period * r.periods), f = frequency_hz / r.sample_rate_hz;
@@ -59,9 +54,7 @@ Tones::Tones(const PeriodicRecord& record, const JointModel& model, const Eigen:
 
 Eigen::VectorXd Tones::taken_out(const Eigen::VectorXd& residual) const {
   if (columns_.cols() == 0) return residual;
-  const Eigen::VectorXd amplitudes =
-      between(record_, columns_).colPivHouseholderQr().solve(Eigen::VectorXd(between(record_, residual)));
-  return residual - columns_ * amplitudes;
+  return residual - columns_ * columns_.colPivHouseholderQr().solve(residual);
 }
 
 }  // namespace bodeflow::residual

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Eigen::Index kLeastSamples = 100;
 constexpr Eigen::Index kWindow = 25, kShortest = 50;     // samples a state
-constexpr Eigen::Index kPieces = 4, kLeastSegments = 4;  // of an excerpt
+constexpr Eigen::Index kPieces = 3, kLeastSegments = 4;  // of an excerpt
 constexpr double kTimeConstants = 4.0;
 constexpr double kOversampling = 2.0;  // half the rate of rows over the corner: the filter has 48 dB there
 // A pole that is slower than the fastest one by this factor integrates.
@@ -109,14 +109,18 @@ std::optional<Layout> excerpt_of(const Layout& whole, Eigen::Index rows) {
   part.row_stretches.clear();
   part.rows = 0;
   const auto count = static_cast<Eigen::Index>(whole.segments.size());
-  const Layout::Segment& first = whole.segments.front();
-  if (count == 1 && first.window > 0) {
+  const bool each_settles =
+      whole.segments.front().window > 0 && whole.segments.front().window < whole.segments.front().samples.count;
+  if (each_settles) {
     if (whole.integrates) return {};  // pieces with a state of their own say little of a drift
-    const Eigen::Index length = first.window + rows / kPieces;
-    if (2 * kPieces * length > first.samples.count) return {};
-    for (Eigen::Index i = 0; i < kPieces; ++i) {
-      const Eigen::Index at = first.samples.first + i * (first.samples.count - length) / (kPieces - 1);
-      part.segments.push_back({{at, length}, first.window, at + first.window, length - first.window});
+    const Eigen::Index pieces = std::max<Eigen::Index>(kPieces / count, 1);
+    for (const Layout::Segment& s : whole.segments) {
+      const Eigen::Index length = s.window + rows / (pieces * count);
+      if (2 * pieces * length > s.samples.count) return {};
+      for (Eigen::Index i = 0; i < pieces; ++i) {
+        const Eigen::Index at = s.samples.first + (pieces > 1 ? i * (s.samples.count - length) / (pieces - 1) : 0);
+        part.segments.push_back({{at, length}, s.window, at + s.window, length - s.window});
+      }
     }
   } else {
     const Eigen::Index every = whole.rows / rows;

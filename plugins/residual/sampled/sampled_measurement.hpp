@@ -13,6 +13,8 @@ struct SampledOptions {
   /// Length of the segments that are simulated from a state of their own [s]; 0: the whole record in one where the plant
   /// settles, short ones where it integrates. Infinite: the whole record whatever the plant.
   double segment_s = 0.0;
+  /// Of a longer record, pieces with about so many rows together are looked at, spread evenly over it; 0: all of it.
+  Eigen::Index most_rows = 0;
 };
 
 /// A recording that is not periodic (or is taken as such): simulation errors in time. No floor is known: the noise level is that

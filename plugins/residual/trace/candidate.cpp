@@ -5,6 +5,7 @@
 
 #include "records/signals.hpp"
 #include "trace/attempt.hpp"
+#include "trace/support.hpp"
 
 namespace bodeflow::residual {
 namespace {
@@ -203,6 +204,10 @@ void settle(const Against& against, Candidate& c) {
   c.with.fit.polished = true;
 }
 
+std::string weakness(const Levels& levels, const Candidate& c) {
+  return hardly_supported(c.with.fit, c.with.fit.model.additions.size() - 1, c.null.amplitudes, levels.p_candidate());
+}
+
 void judge(const Levels& levels, bool share_counts, bool floor_known, Candidate& c) {
   c.accepted = false;
   if (!c.tried) return;
@@ -225,6 +230,8 @@ void judge(const Levels& levels, bool share_counts, bool floor_known, Candidate&
   } else if (floor_known && share_counts && !(c.added_share > kLeastShare)) {
     c.reason = "adds " + short_number(100.0 * c.added_share, 2) + " % to what is explained, needed above " +
                short_number(100.0 * kLeastShare, 2) + " %";
+  } else if (const std::string weak = floor_known ? "" : weakness(levels, c); !weak.empty()) {
+    c.reason = "hardly supported: " + weak;
   } else {
     c.accepted = true;
     c.reason = "";

@@ -82,6 +82,8 @@ void carry_over(const Against& against, Candidate& c);
 void go_on(const Against& against, Candidate& c);
 /// Goes on to the optimum.
 void settle(const Against& against, Candidate& c);
+/// Why the fitted records hardly support it, "" if they do (see hardly_supported).
+std::string weakness(const Levels& levels, const Candidate& c);
 /// Sets accepted and reason. `share_counts`: it has to add a part of what is missing that is worth the name.
 void judge(const Levels& levels, bool share_counts, bool floor_known, Candidate& c);
 /// Tests the classes and sets explains.

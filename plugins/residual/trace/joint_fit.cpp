@@ -62,10 +62,12 @@ Fit fit_at(const FitProblem& problem, const Approach& a) {
 }
 
 Expected<Fit> polish(const FitProblem& problem, const Eigen::VectorXd& coordinates) {
+  // The search ends where steps are small beside the coordinates: they are counted from a unit before the start.
+  const Eigen::VectorXd origin = coordinates - Eigen::VectorXd::Ones(coordinates.size());
   Eigen::VectorXd point, there;  // the last residual, which the Jacobian at the same point needs again
   const auto residual = [&](const Eigen::VectorXd& c) {
     if (point.size() == 0 || point != c) {
-      there = problem.residual(c);
+      there = problem.residual(origin + c);
       point = c;
     }
     return there;
@@ -74,12 +76,13 @@ Expected<Fit> polish(const FitProblem& problem, const Eigen::VectorXd& coordinat
                                                     [&](const Eigen::VectorXd& c, Eigen::VectorXd& r) { r = residual(c); },
                                                     [&](const Eigen::VectorXd& c, Eigen::MatrixXd& j) {
                                                       const Eigen::VectorXd here = residual(c);
-                                                      j = problem.jacobian(c, here);
+                                                      j = problem.jacobian(origin + c, here);
                                                     }};
-  const auto found = numerics::levenberg_marquardt(least_squares, coordinates, kLimits);
+  const auto found = numerics::levenberg_marquardt(least_squares, coordinates - origin, kLimits);
   if (!found) return tl::unexpected(found.error());
-  Approach end{problem.within_bounds(found->parameters), found->residual, found->jacobian, found->cost, true};
-  if (end.at != found->parameters) end.jacobian = problem.jacobian(end.at, end.residual);
+  const Eigen::VectorXd at = origin + found->parameters;
+  Approach end{problem.within_bounds(at), found->residual, found->jacobian, found->cost, true};
+  if (end.at != at) end.jacobian = problem.jacobian(end.at, end.residual);
   if (!end.jacobian.allFinite() || !end.residual.allFinite()) return refused("the search ended at the border of the domain");
   Fit f = fit_at(problem, end);
   f.widening = widening(f);

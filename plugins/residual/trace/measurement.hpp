@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
@@ -104,6 +105,16 @@ class Measurement {
                                                     const Eigen::VectorXd& /*residual*/, const Addition& /*effect*/) const {
     return nullptr;
   }
+
+  /// The same record with what its inputs most probably were, by what was measured of them and of the output together, for a
+  /// model at these values; residuals keep their meaning. nullptr where the inputs are known, or the model can't be computed.
+  virtual std::shared_ptr<const Measurement> with_likely_input(const JointModel& /*model*/,
+                                                               const Eigen::VectorXd& /*values*/) const {
+    return nullptr;
+  }
+  /// The same record with noise added to its inputs, as large as theirs is: of that draw, `sign` times. What a linear plant
+  /// makes of it is added to the output. nullptr where the inputs are known.
+  virtual std::shared_ptr<const Measurement> with_input_noise(std::uint64_t /*draw*/, double /*sign*/) const { return nullptr; }
 
   /// Tests by class. `jacobian` of the residual by the fit's coordinates and their `covariance`; `fitted`: the record was fitted.
   virtual std::vector<ClassTest> tests(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,

@@ -339,6 +339,7 @@ Null null_distribution(const FitProblem& problem, const Fit& from, const std::ve
   const Beside beside(problem, from, looks);
   const std::vector<Eigen::Index> amplitudes = vanishing(beside, effect.parameters, starts.front());
   Null n;
+  n.amplitudes = amplitudes;
   n.freedom = 0.0;
   for (const Eigen::Index i : amplitudes) {
     const FitParameter& p = effect.parameters[static_cast<std::size_t>(i)];

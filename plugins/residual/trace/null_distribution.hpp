@@ -9,11 +9,12 @@ namespace bodeflow::residual {
 
 /// What an effect gains on the fitted records where it is not there.
 struct Null {
-  double freedom = 1.0;           ///< parameters that count: those at which the effect vanishes, own ones once a record
-  bool one_sided = false;         ///< half of the chance findings have the wrong sign
-  double trials = 1.0;            ///< independent places in which the search could find something
-  bool tone = false;              ///< trials grow with the square root of the gain, as a frequency is no bin
-  std::vector<double> simulated;  ///< gains of simulated nulls, in rising order; empty where one trial is all there is
+  double freedom = 1.0;                  ///< parameters that count: those at which the effect vanishes, own ones once a record
+  bool one_sided = false;                ///< half of the chance findings have the wrong sign
+  double trials = 1.0;                   ///< independent places in which the search could find something
+  bool tone = false;                     ///< trials grow with the square root of the gain, as a frequency is no bin
+  std::vector<Eigen::Index> amplitudes;  ///< of the effect's parameters those at which it vanishes
+  std::vector<double> simulated;         ///< gains of simulated nulls, in rising order; empty where one trial is all there is
 
   /// Values of the effect's parameters where a linear look at the residual finds most, best first.
   std::vector<Eigen::VectorXd> starts;

@@ -22,6 +22,16 @@ std::optional<double> remedy_value(const RemedyKind& kind, const std::vector<Nam
   return std::nullopt;
 }
 
+std::optional<Remedied> remedied(const RemedyKind& kind, const std::vector<NamedEffect>& named, double factor,
+                                 const std::string& place, double steady_gain) {
+  if (const auto own = remedy_value(kind, named, factor, place)) return Remedied{kind.effect, *own};
+  const std::string twin = kind.twin;
+  if (twin.empty()) return std::nullopt;
+  const RemedyKind like{kind.twin, kind.twin, kind.parameter, kind.positive};
+  const auto found = remedy_value(like, named, factor * steady_gain, place);
+  return found ? std::optional(Remedied{twin, *found}) : std::nullopt;
+}
+
 std::string amount_text(double value, const std::string& unit) {
   if (unit == "s" && std::abs(value) < 1e-3) return records::short_number(1e6 * value, 4) + " us";
   return records::short_number(value, 4) + (unit.empty() || unit == "1" ? "" : " " + unit);

@@ -6,12 +6,13 @@
 
 #include "records/signals.hpp"
 #include "trace/excerpt.hpp"
+#include "trace/support.hpp"
 
 namespace bodeflow::residual {
 namespace {
 
 // A candidate that gains less than this part of what the best one does is no rival: it is not fitted to the end.
-// One that was searched for by looks is nearer to its end.
+// One that was searched for by looks is nearer to its end; but where none of those explains, it may not have been.
 constexpr double kRival = 0.5, kNearRival = 0.8;
 // One that has gained so much of it after a few steps may still overtake.
 constexpr double kPromising = 0.2;
@@ -20,6 +21,9 @@ constexpr std::size_t kMostSettled = 6;
 constexpr double kHalfwayThere = 0.5;
 // One that chance would do once in so many times its level may be a finding once it is fitted to the end.
 constexpr double kNearLevel = 100.0;
+
+// What removes less than this part of the squared error that another does is no equivalent of it, where no floor is known.
+constexpr double kAlike = 0.8;
 
 // Deviations of chi2 by chance.
 constexpr double kStandsOut = 10.0;
@@ -46,7 +50,7 @@ class Searcher {
     out_.best = out_.base;
     while (out_.found.size() < settings_.most_effects && take_step()) {
     }
-    if (!out_.found.empty()) find_equivalents();
+    if (!out_.found.empty() && (out_.explains || !floor_known_)) find_equivalents();
     tell_passed_over();
     return std::move(out_);
   }
@@ -63,7 +67,7 @@ class Searcher {
     Step step;
     const bool near = floor_known_ && !before.tests.empty() && before.smallest_p() > out_.levels.p_class();
     const Fit& base = out_.base.fit;
-    const double missing = floor_known_ ? std::max(base.chi2 - static_cast<double>(base.residual.size()), 0.0) : 0.0;
+    const double missing = floor_known_ ? std::max(base.chi2 - static_cast<double>(base.residual.size()), 0.0) : before.fit.chi2;
     const Against against{bench_, before, out_.base.select.residual, base_starts_, near, near ? 0.0 : missing};
     const std::optional<Excerpt> excerpt = near ? std::nullopt : excerpt_of(bench_, before);
     std::vector<Bound> all = bind_all(catalogue, before.fit.model, values_of(before.fit), bench_.fit);
@@ -78,7 +82,8 @@ class Searcher {
         continue;
       }
       if (excerpt) {
-        const Against part{excerpt->bench, excerpt->before, against.original_select, base_starts_, near};
+        const Against part{excerpt->bench, excerpt->before,         against.original_select, base_starts_,
+                           near,           excerpt->before.fit.chi2};
         step.candidates.push_back(try_effect(b.addition, part));
         step.candidates.back().on_parts = step.candidates.back().tried;
       } else {
@@ -96,7 +101,18 @@ class Searcher {
       settle_and_judge(against, share_counts, step);
     }
     judge_leaders(step);
+    if (floor_known_ && leaves_something(step)) {
+      settle_and_judge(against, share_counts, step, kRival);
+      judge_leaders(step);
+    }
     return step;
+  }
+
+  /// The best candidate is accepted, but what it leaves is more than noise, or its fit has not ended.
+  static bool leaves_something(const Step& step) {
+    if (step.candidates.empty() || !step.candidates.front().accepted) return false;
+    const Candidate& best = step.candidates.front();
+    return !best.explains || !best.with.fit.converged || best.with.smallest_p() <= step.levels.p_class();
   }
 
   /// Takes those that were fitted to parts of the records to the whole ones: what gains at least that part of the best on the
@@ -111,10 +127,10 @@ class Searcher {
     }
   }
 
-  void settle_and_judge(const Against& against, bool share_counts, Step& step) const {
+  void settle_and_judge(const Against& against, bool share_counts, Step& step, double near_rival = kNearRival) const {
     auto& all = step.candidates;
     go_on_with_rivals(against, step);
-    settle_rivals(against, step);
+    settle_rivals(against, near_rival, step);
     for (Candidate& c : all) judge(step.levels, share_counts, floor_known_, c);
     rank(all);
     while (!all.empty() && all.front().accepted && !all.front().with.fit.polished) {
@@ -123,6 +139,24 @@ class Searcher {
       judge(step.levels, share_counts, floor_known_, all.front());
       rank(all);
     }
+    if (!floor_known_) settle_simpler(against, share_counts, step);
+  }
+
+  /// Squares that it removes from the selecting record.
+  static double removed(const Candidate& c) { return c.select_gain.excess_before - c.select_gain.excess_after; }
+
+  /// Fits those to the end that explain nearly as much as the best with fewer parameters: `prefer_simpler` may choose them.
+  void settle_simpler(const Against& against, bool share_counts, Step& step) const {
+    auto& all = step.candidates;
+    if (all.empty() || !all.front().accepted) return;
+    const double price = all.front().price, most = removed(all.front());
+    for (Candidate& c : all) {
+      if (!c.accepted || c.with.fit.polished || !(c.price < price) || !(removed(c) > kAlike * most)) continue;
+      carry_over(against, c);
+      settle(against, c);
+      judge(step.levels, share_counts, floor_known_, c);
+    }
+    rank(all);
   }
 
   /// What the base model leaves of the selecting record is so much more than noise that shares of it mean something.
@@ -147,7 +181,7 @@ class Searcher {
       if (!c.on_parts && c.fit_gain > kPromising * most && c.p < kNearLevel * step.levels.p_candidate()) go_on(against, c);
   }
 
-  void settle_rivals(const Against& against, Step& step) const {
+  void settle_rivals(const Against& against, double near_rival, Step& step) const {
     auto& all = step.candidates;
     for (std::size_t n = 0; n < kMostSettled; ++n) {
       double best = 0.0;
@@ -155,9 +189,9 @@ class Searcher {
         if (c.tried) best = std::max(best, c.merit());
       Candidate* next = nullptr;
       for (Candidate& c : all) {
-        const double rival = c.approached ? kNearRival : kRival;
+        const double rival = c.approached ? near_rival : kRival;
         if (!c.tried || c.on_parts || c.with.fit.polished || c.p > kNearLevel * step.levels.p_candidate() ||
-            c.merit() < rival * best)
+            c.merit() < rival * best || !(floor_known_ || weakness(step.levels, c).empty()))
           continue;
         if (next == nullptr || c.merit() > next->merit()) next = &c;
       }
@@ -195,6 +229,7 @@ class Searcher {
     if (!floor_known_) {
       for (std::size_t n = 1; n < all.size() && all[n].accepted; ++n) {
         if (!all[n].with.fit.polished || !(all[n].price < all.front().price)) continue;
+        if (!(removed(all[n]) > kAlike * removed(all.front()))) continue;
         if (!(distinction(bench_, all.front(), all[n]) < step.levels.z_candidate())) continue;
         std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n), all.begin() + static_cast<std::ptrdiff_t>(n) + 1);
       }
@@ -217,7 +252,7 @@ class Searcher {
       best.reason = "added";
       out_.best = best.with;
       out_.share = best.share;
-      out_.found.push_back({best.addition, best.added_share, {}, {}});
+      out_.found.push_back({best.addition, best.added_share, {}, {}, best.null.amplitudes});
       out_.explains = best.explains && (floor_known_ || best.with.smallest_p() > step.levels.p_class());
     }
     out_.steps.push_back(std::move(step));
@@ -242,6 +277,11 @@ class Searcher {
     return std::move(*examined);
   }
 
+  /// Where no floor is known, what is found later may take the ground from under what was found before.
+  bool is_supported(std::size_t n) const {
+    return floor_known_ || hardly_supported(out_.best.fit, n, out_.found[n].amplitudes, out_.levels.p_candidate()).empty();
+  }
+
   /// Drops effects whose absence costs nothing on the selecting record.
   void drop_needless() {
     for (std::size_t n = 0; n + 1 < out_.found.size();) {
@@ -249,7 +289,7 @@ class Searcher {
       if (!rest) return;
       const Gain g = bench_.select->gain(rest->select.residual, out_.best.select.residual);
       const double fitted = static_cast<double>(out_.best.select.fitted - rest->select.fitted);
-      if (held_out_p(g.likelihood, fitted) < out_.levels.p_candidate()) {
+      if (held_out_p(g.likelihood, fitted) < out_.levels.p_candidate() && is_supported(n)) {
         ++n;
         continue;
       }
@@ -307,6 +347,18 @@ class Searcher {
     }
   }
 
+  /// Where no floor is known, blocks that differ much hide that one of them removes far less of the squares.
+  bool explains_alike(const Candidate& best, const Candidate& c) const {
+    if (floor_known_) return true;
+    return removed(c) > kAlike * (c.select_gain.excess_before - best.with.select.residual.squaredNorm());
+  }
+
+  /// What the best leaves is noise, and what that one leaves is not.
+  bool leaves_more(const Candidate& c, const Step& step) const {
+    const double limit = step.levels.p_class();
+    return floor_known_ && out_.best.smallest_p() > limit && c.with.smallest_p() <= limit;
+  }
+
   /// Notes what explains as well as the effect at that position.
   void compare(std::size_t position, Step& step) {
     Found& f = out_.found[position];
@@ -317,7 +369,7 @@ class Searcher {
     for (Candidate& c : step.candidates) {
       if (c.label == f.addition.label || !c.accepted || !c.with.fit.polished || (out_.explains && !c.explains)) continue;
       const double z = distinction(bench_, best, c);
-      const bool apart = z > step.levels.z_candidate();
+      const bool apart = z > step.levels.z_candidate() || !explains_alike(best, c) || leaves_more(c, step);
       c.reason = (apart ? "explains less than " : "explains it as well as ") + f.addition.label + (apart ? ": " : " does: ") +
                  records::short_number(z, 2) + " standard deviations apart";
       if (!apart) f.equivalents.push_back(c.label);

@@ -23,6 +23,7 @@ struct Found {
   double share = 0.0;                    ///< of what the base model lacks: what it adds to the explanation
   std::vector<std::string> equivalents;  ///< labels or names of what can't be told from it
   std::string separation;                ///< what would tell them apart
+  std::vector<Eigen::Index> amplitudes;  ///< of its parameters those at which it vanishes
 };
 
 /// What a search came to.

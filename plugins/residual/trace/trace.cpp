@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "records/signals.hpp"
+#include "trace/final_fit.hpp"
 
 namespace bodeflow::residual {
 namespace {
@@ -137,6 +138,7 @@ Expected<Trace> trace(std::shared_ptr<const BaseModel> base, const Catalogue& ca
   t.floor_known = data.select->floor_known();
   declare_equivalents(*base, settings.known, t.searched);
   t.verdict = verdict_of(t);
+  if (t.added()) t.searched.best.fit = final_fit(t.searched.best.fit, data.fit);
   t.p = overall_p(t.searched);
   auto before = hold_out(t.searched.base.fit, *data.test);
   if (!before) return tl::unexpected(before.error());

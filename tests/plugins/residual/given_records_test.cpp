@@ -56,6 +56,40 @@ TEST_CASE("given records: one record alone is split in time, the order kept and 
         "'select' and 'test'");
 }
 
+TEST_CASE("given records: of a very long one over time the middle is looked at, and the whole tells the error") {
+  records::Recording whole = plain(200000), test = plain(140000);
+  GivenRecords given = only_fit({whole});
+  given.select = plain(300);
+  given.test = test;
+  const auto g = with_all_parts(given, Engine::sampled).value();
+  REQUIRE(recording_in(g.fit[0]).samples() == 131072);
+  CHECK(recording_in(g.fit[0]).output(0, 0) == whole.output((200000 - 131072) / 2, 0));
+  CHECK(recording_in(*g.select).samples() == 300);
+  CHECK(recording_in(*g.test).samples() == 140000);
+  CHECK(g.notes ==
+        std::vector<std::string>{"record 'fit 1' has 200000 samples, of which the 131072 in its middle are looked at"});
+}
+
+TEST_CASE("given records: units that the base model can't have are refused where they are given") {
+  const auto motor = declared_base<MotorStandstill>();
+  GivenRecords given = only_fit({bench::record({}, 4.0, 1, 2)});
+  given.select = bench::record({}, 4.0, 2, 2);
+  given.test = bench::record({}, 4.0, 3, 2);
+  auto foreign = recording_in(given.fit[0]);
+  foreign.input_signals.units = {"N"};
+  foreign.output_signals.units = {"m"};
+  const std::string in = foreign.input_signals.names[0], out = foreign.output_signals.names[0];
+  given.fit[0] = foreign;
+  CHECK(measurements_of(given, Engine::periodic, *motor, {}).error().text ==
+        "record 'fit 1': '" + out + "' is in m and '" + in +
+            "' in N; the base model needs output over input in S: check the signals and what is declared");
+  for (const char* unit : {"", "1"}) {
+    foreign.output_signals.units = {unit};
+    given.fit[0] = foreign;
+    CHECK(measurements_of(given, Engine::periodic, *motor, {}));
+  }
+}
+
 TEST_CASE("given records: a periodic one is split by whole periods, the skipped ones left out") {
   const records::Recording whole = bench::record({}, 4.0, 1, 7);
   const auto g = with_all_parts(only_fit({whole}), Engine::periodic).value();

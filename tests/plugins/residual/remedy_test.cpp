@@ -68,6 +68,19 @@ TEST_CASE("remedy: nobody sends commands later for a delay below zero") {
   CHECK(remedy_value(kRemedies[2], effects, 1.0, "") == -0.2);
 }
 
+TEST_CASE("remedy: an offset of the input is taken off the measurement behind the plant's steady gain") {
+  const std::vector<NamedEffect> input{{"input_offset", "", {"input_offset"}, {0.3}}};
+  const auto found = remedied(kRemedies[2], input, 1.0, "", -2.0);
+  REQUIRE(found);
+  CHECK(found->effect == "input_offset");
+  CHECK(found->value == Approx(-0.6));
+  CHECK_FALSE(remedied(kRemedies[2], input, 1.0, "", std::numeric_limits<double>::infinity()));
+  CHECK_FALSE(remedied(kRemedies[2], input, 1.0, "", std::numeric_limits<double>::quiet_NaN()));
+  CHECK_FALSE(remedied(kRemedies[0], input, 1.0, "", 1.0));
+  const std::vector<NamedEffect> both{input[0], {"offset", "", {"offset"}, {-0.2}}};
+  CHECK(remedied(kRemedies[2], both, 1.0, "", -2.0)->effect == "offset");
+}
+
 TEST_CASE("told model: built again without the effects that were remedied, with the parameters found beside them") {
   const ToldModel t = read_told_model(AlignedRecord(told()).view());
   const RebuiltModel all = rebuild(t, parts(), {});

@@ -207,10 +207,10 @@ TEST_CASE("sampled: quick searches get a part of a long record, spread over it, 
   const auto m = measured(*base, u, y);
   const auto part = m->excerpt();
   REQUIRE(part);
-  CHECK(part->rows() == 3000);
+  CHECK(part->rows() == 2400);
   const JointModel model{base, {}};
   CHECK(part->error(part->residual(model, kPlant)).error < 1e-6 * rms(y));
-  CHECK(measured(*base, u.head(15000), y.head(15000))->excerpt() == nullptr);
+  CHECK(measured(*base, u.head(11000), y.head(11000))->excerpt() == nullptr);
 }
 
 TEST_CASE("sampled: what is said of a record: sizes, coefficients, what is missing") {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "commands/command.hpp"
+#include "commands/filter_response.hpp"
 #include "console/json_output.hpp"
 #include "plugins/description_json.hpp"
 
@@ -157,13 +158,19 @@ void print(const EffectDescription& effect, const PluginDescription& plugin) {
   print_foot(effect.references, plugin);
 }
 
-int describe(const Session& session, const std::string& id, bool as_json) {
-  const Registry registry = session.open_registry();
+int describe(const Session& session, const std::string& id, const ConfiguredBlock& configured) {
+  Registry registry = session.open_registry();
+  const bool as_json = configured.json;
   const PluginDescription* plugin = registry.plugin_of(id);
   if (plugin == nullptr) {
     std::vector<std::string> all = registry.ids();
     for (const auto& more : {registry.effects(), registry.base_models()}) all.insert(all.end(), more.begin(), more.end());
     say_error(fmt::format("no block, effect or base model '{}'{}; 'bodeflow plugins' lists them", id, did_you_mean(id, all)));
+    return kUsage;
+  }
+  if (!configured.sets.empty() || !configured.rate.empty()) {
+    if (const BlockDescription* block = registry.find(id)) return print_filter_response(session, registry, *block, configured);
+    say_error(fmt::format("--set and --rate go with a block, {} is none", id));
     return kUsage;
   }
   if (const EffectDescription* effect = registry.find_effect(id)) {
@@ -182,10 +189,15 @@ void add_describe(CLI::App& app, Session& session) {
   auto* command = app.add_subcommand(
       "describe", "Tell what a block, an effect or a base model is: ports, parameters with units and ranges, references");
   auto id = std::make_shared<std::string>();
-  auto json = std::make_shared<bool>(false);
+  auto configured = std::make_shared<ConfiguredBlock>();
   command->add_option("id", *id, "Block, effect or base model, such as spectrum.averaging_dft")->required();
-  command->add_flag("--json", *json, "Print JSON");
-  command->callback([&session, id, json] { session.action = [&session, id, json] { return describe(session, *id, *json); }; });
+  command->add_option("--set", configured->sets, "PARAM=VALUE of a filter: tell its frequency and impulse response")
+      ->allow_extra_args(false);
+  command->add_option("--rate", configured->rate, "Sample rate of a filter's input, such as '10 kHz'");
+  command->add_flag("--json", configured->json, "Print JSON");
+  command->callback([&session, id, configured] {
+    session.action = [&session, id, configured] { return describe(session, *id, *configured); };
+  });
 }
 
 }  // namespace bodeflow::tools

@@ -53,6 +53,7 @@ bool add_by_type(Page& page, const Record& record, std::span<const Response> res
   if (record.type == "whiteness") return add_whiteness(page, record);
   if (record.type == "residual") return add_residual(page, record);
   if (record.type == "controller") return add_controller(page, record);
+  if (record.type == "filter") return add_filter(page, record);
   if (record.type == "trace") return add_trace(page, record);
   if (record.type == "reveal") return add_reveal(page, record);
   if (record.type == "sweep") return add_sweep(page, record);

@@ -23,34 +23,51 @@ struct Wide<1> {
   typedef double type;
 };
 
-// to <- the elements of a and b by turns, of their first or of their second halves.
-template <int W>
-[[gnu::always_inline]] inline void interleave(const typename Wide<W>::type& a, const typename Wide<W>::type& b, bool second,
-                                              typename Wide<W>::type& to) {
+// to <- halves of a and b. Pairs of elements stand in units of 128 bits: with `whole` the even (odd) units of a, then those of b;
+// otherwise the even (odd) elements of a and b by turns. Instructions that stay within units are the quick ones.
+template <int W, bool whole, bool odd>
+[[gnu::always_inline]] inline void pick(const typename Wide<W>::type& a, const typename Wide<W>::type& b,
+                                        typename Wide<W>::type& to) {
+  constexpr int kHalf = W < 4 ? 1 : W / 4;  // units that come from a
   typename Wide<W>::mask order;
-  for (int i = 0; i < W / 2; ++i) {
-    order[2 * i] = i + (second ? W / 2 : 0);
-    order[2 * i + 1] = order[2 * i] + W;
+  for (int i = 0; i < W; ++i) {
+    const int unit = i / 2, place = i % 2;
+    if (whole) {
+      const int from = 2 * (unit % kHalf) + odd;
+      order[i] = (unit < kHalf ? 0 : W) + 2 * from + place;
+    } else {
+      order[i] = 2 * unit + odd + place * W;
+    }
   }
   to = __builtin_shuffle(a, b, order);
 }
 
-// W x W values: column j of `from` becomes row j of `to`. Interleaving the first half of the rows with the second half, log2 W
-// times.
+// W x W values: column j of `row` becomes row j of `to`. First pairs of rows, then units at distances 2, 4, ...
 template <int W>
-[[gnu::always_inline]] inline void transpose_square(const double* const* from, double* const* to) {
-  typename Wide<W>::type row[W], next[W];
-  for (int i = 0; i < W; ++i) row[i] = *reinterpret_cast<const typename Wide<W>::loose*>(from[i]);
-  for (int stage = 1; stage < W; stage *= 2) {
-    for (int i = 0; i < W / 2; ++i) {
-      interleave<W>(row[i], row[i + W / 2], false, next[2 * i]);
-      interleave<W>(row[i], row[i + W / 2], true, next[2 * i + 1]);
-    }
-    for (int i = 0; i < W; ++i) row[i] = next[i];
+[[gnu::always_inline]] inline void transpose_rows(typename Wide<W>::type* row, double* const* to) {
+  using Loose = typename Wide<W>::loose;
+  typename Wide<W>::type next[W];
+  for (int i = 0; i < W; i += 2) {
+    pick<W, false, false>(row[i], row[i + 1], next[i]);
+    pick<W, false, true>(row[i], row[i + 1], next[i + 1]);
   }
-  for (int i = 0; i < W; ++i) *reinterpret_cast<typename Wide<W>::loose*>(to[i]) = row[i];
+  for (int distance = 2; distance < W; distance *= 2) {
+    for (int i = 0; i < W; ++i) row[i] = next[i];
+    for (int i = 0; i < W; ++i) {
+      if ((i & distance) != 0) continue;
+      pick<W, true, false>(row[i], row[i + distance], next[i]);
+      pick<W, true, true>(row[i], row[i + distance], next[i + distance]);
+    }
+  }
+  for (int i = 0; i < W; ++i) *reinterpret_cast<Loose*>(to[i]) = next[i];
 }
 
+template <int W>
+[[gnu::always_inline]] inline void transpose_square(const double* const* from, double* const* to) {
+  typename Wide<W>::type row[W];
+  for (int i = 0; i < W; ++i) row[i] = *reinterpret_cast<const typename Wide<W>::loose*>(from[i]);
+  transpose_rows<W>(row, to);
+}
 // tile[n][lane] = x[lane][n].
 template <int W>
 [[gnu::always_inline]] inline void gather(const double* const* x, size lanes, size count, double* tile) {
@@ -68,28 +85,6 @@ template <int W>
     }
     for (; n < count; ++n) {
       for (size i = l; i < l + W; ++i) tile[n * kLanes + i] = x[i < lanes ? i : 0][n];
-    }
-  }
-}
-
-// y[lane][n] = tile[n][lane].
-template <int W>
-[[gnu::always_inline]] inline void scatter(const double* tile, size lanes, size count, double* const* y) {
-  double unused[kTile];
-  const double* from[W];
-  double* to[W];
-  for (size l = 0; l < lanes; l += W) {
-    size n = 0;
-    for (; n + W <= count; n += W) {
-      for (int i = 0; i < W; ++i) {
-        const size lane = l + static_cast<size>(i);
-        from[i] = tile + (n + static_cast<size>(i)) * kLanes + l;
-        to[i] = lane < lanes ? y[lane] + n : unused;
-      }
-      transpose_square<W>(from, to);
-    }
-    for (; n < count; ++n) {
-      for (size i = l; i < l + W && i < lanes; ++i) y[i][n] = tile[n * kLanes + i];
     }
   }
 }
@@ -122,40 +117,115 @@ struct Rotation {
   }
 };
 
-// One section of `G` groups over a tile each, in place. Several groups at once hide the latency of the recursion.
-template <template <int> class Form, int W, int G>
-[[gnu::always_inline]] inline void run_section(const double* const* coefficients, double* const* states, double* const* tiles,
-                                               size count) {
+// A group of lanes during a tile.
+struct Group {
+  const double* coefficients;  // of the first section
+  double* states;
+  double* tile;       // [sample][lane]
+  double* y[kLanes];  // where the outputs of the tile go
+};
+
+// y[lane][n] = tile[n][lane] for the samples begin .. end - 1, at most W of them.
+template <int W>
+[[gnu::always_inline]] inline void scatter(const Group& group, size begin, size end) {
+  const double* from[W];
+  double* to[W];
+  for (size l = 0; l < kLanes; l += W) {
+    if (end - begin < W) {
+      for (size n = begin; n < end; ++n) {
+        for (size i = l; i < l + W; ++i) group.y[i][n] = group.tile[n * kLanes + i];
+      }
+      continue;
+    }
+    for (int i = 0; i < W; ++i) {
+      from[i] = group.tile + (begin + static_cast<size>(i)) * kLanes + l;
+      to[i] = group.y[l + static_cast<size>(i)] + begin;
+    }
+    transpose_square<W>(from, to);
+  }
+}
+
+enum Place { kInside = 0, kFirst = 1, kLast = 2 };
+
+// W samples of the last section of groups of W lanes: the outputs go from the registers to their channels.
+template <template <int> class Form, int W, int G, int P, class Coefficients, class States>
+[[gnu::always_inline]] inline void run_square(const Group* groups, const Coefficients& c, States& s, size n,
+                                              const double* shared) {
+  using V = typename Wide<W>::type;
+  V out[G][W];
+  for (int i = 0; i < W; ++i) {
+    for (int g = 0; g < G; ++g) {
+      V x = reinterpret_cast<const V*>(groups[g].tile)[n + static_cast<size>(i)];
+      if (P & kFirst) x = shared[n + static_cast<size>(i)] - V{};
+      Form<W>::step(c[g][0], s[g][0][0], s[g][0][1], x);
+      out[g][i] = x;
+    }
+  }
+  for (int g = 0; g < G; ++g) {
+    double* to[W];
+    for (int i = 0; i < W; ++i) to[i] = groups[g].y[i] + n;
+    transpose_rows<W>(out[g], to);
+  }
+}
+
+// One section of `G` groups over a tile, in place. Several groups at once hide the latency of the recursion. With kFirst all
+// lanes take their input from `shared`, with kLast the outputs go to their channels, W samples at a time.
+template <template <int> class Form, int W, int G, int P>
+[[gnu::always_inline]] inline void run_section(const Group* groups, size section, size count, const double* shared) {
   using V = typename Wide<W>::type;
   constexpr int kParts = static_cast<int>(kLanes) / W, kCoefficients = Form<W>::kCoefficients;
   V c[G][kParts][kCoefficients], s[G][kParts][2];
   for (int g = 0; g < G; ++g) {
+    const V* from = reinterpret_cast<const V*>(groups[g].coefficients) + section * static_cast<size>(kCoefficients * kParts);
+    const V* state = reinterpret_cast<const V*>(groups[g].states) + section * static_cast<size>(2 * kParts);
     for (int p = 0; p < kParts; ++p) {
-      for (int i = 0; i < kCoefficients; ++i) c[g][p][i] = reinterpret_cast<const V*>(coefficients[g])[i * kParts + p];
-      for (int i = 0; i < 2; ++i) s[g][p][i] = reinterpret_cast<const V*>(states[g])[i * kParts + p];
+      for (int i = 0; i < kCoefficients; ++i) c[g][p][i] = from[i * kParts + p];
+      for (int i = 0; i < 2; ++i) s[g][p][i] = state[i * kParts + p];
     }
   }
-  for (size n = 0; n < count; ++n) {
-    for (int g = 0; g < G; ++g) {
-      V* tile = reinterpret_cast<V*>(tiles[g]) + n * static_cast<size>(kParts);
-      for (int p = 0; p < kParts; ++p) Form<W>::step(c[g][p], s[g][p][0], s[g][p][1], tile[p]);
+  for (size n = 0; n < count; n += W) {
+    const size end = n + W < count ? n + W : count;
+    if (kParts == 1 && (P & kLast) && n + W <= count) {
+      run_square<Form, W, G, P>(groups, c, s, n, shared);
+      continue;
+    }
+    for (size m = n; m < end; ++m) {
+      for (int g = 0; g < G; ++g) {
+        V* tile = reinterpret_cast<V*>(groups[g].tile) + m * static_cast<size>(kParts);
+        for (int p = 0; p < kParts; ++p) {
+          V x = tile[p];
+          if (P & kFirst) x = shared[m] - V{};
+          Form<W>::step(c[g][p], s[g][p][0], s[g][p][1], x);
+          tile[p] = x;
+        }
+      }
+    }
+    if (P & kLast) {
+      for (int g = 0; g < G; ++g) scatter<W>(groups[g], n, end);
     }
   }
   for (int g = 0; g < G; ++g) {
+    V* state = reinterpret_cast<V*>(groups[g].states) + section * static_cast<size>(2 * kParts);
     for (int p = 0; p < kParts; ++p) {
-      for (int i = 0; i < 2; ++i) reinterpret_cast<V*>(states[g])[i * kParts + p] = s[g][p][i];
+      for (int i = 0; i < 2; ++i) state[i * kParts + p] = s[g][p][i];
     }
   }
 }
 
 // Sets states that decayed to nothing to zero; false where one is not finite.
+template <int W>
 [[gnu::always_inline]] inline bool settle(double* states, size count) {
-  double wrong = 0;
-  for (size i = 0; i < count; ++i) {
-    wrong += states[i] - states[i];
-    states[i] = (states[i] < kSilent) & (states[i] > -kSilent) ? 0.0 : states[i];
+  using V = typename Wide<W>::type;
+  V wrong{};
+  for (size i = 0; i < count; i += W) {
+    V& s = *reinterpret_cast<V*>(states + i);
+    wrong += s - s;
+    s = (s < kSilent) & (s > -kSilent) ? V{} : s;
   }
-  return wrong == 0;
+  for (int i = 0; i < W; ++i) {
+    if (!(wrong[i] == 0)) return false;
+  }
+  return true;
 }
 
 // `G` groups from group `first` on: a tile at a time, cut at the same samples of the stream whatever the calls are.
@@ -163,44 +233,35 @@ template <template <int> class Form, int W, int G>
 [[gnu::always_inline]] inline bool run_groups(const Cascade& k, size first, size count, size position) {
   constexpr size kCoefficients = static_cast<size>(Form<W>::kCoefficients) * kLanes;
   alignas(64) double tile[G][kTile * kLanes];
-  const double* c[G];
-  double* s[G];
-  double* t[G];
+  double unused[kTile];
+  Group groups[G];
   const double* x[kLanes];
-  double* y[kLanes];
-  double* const states = k.states + first * k.sections * 2 * kLanes;
+  const size last = k.sections - 1;
   bool finite = true;
   for (size n = 0; n < count;) {
     const size left = kTile - (position + n) % kTile;
     const size part = left < count - n ? left : count - n;
     for (int g = 0; g < G; ++g) {
-      const size lane = (first + static_cast<size>(g)) * kLanes;
+      const size group = first + static_cast<size>(g), lane = group * kLanes;
       const size lanes = k.lanes - lane < kLanes ? k.lanes - lane : kLanes;
-      if (k.shared_input) {
-        for (size m = 0; m < part; ++m) {
-          for (size l = 0; l < kLanes; ++l) tile[g][m * kLanes + l] = k.x[0][n + m];
-        }
-      } else {
-        for (size l = 0; l < lanes; ++l) x[l] = k.x[lane + l] + n;
-        gather<W>(x, lanes, part, tile[g]);
-      }
+      groups[g].coefficients = k.coefficients + group * k.sections * kCoefficients;
+      groups[g].states = k.states + group * k.sections * 2 * kLanes;
+      groups[g].tile = tile[g];
+      for (size l = 0; l < kLanes; ++l) groups[g].y[l] = l < lanes ? k.y[lane + l] + n : unused;
+      if (k.shared_input) continue;
+      for (size l = 0; l < lanes; ++l) x[l] = k.x[lane + l] + n;
+      gather<W>(x, lanes, part, tile[g]);
     }
-    for (size section = 0; section < k.sections; ++section) {
-      for (int g = 0; g < G; ++g) {
-        const size place = (first + static_cast<size>(g)) * k.sections + section;
-        c[g] = k.coefficients + place * kCoefficients;
-        s[g] = k.states + place * 2 * kLanes;
-        t[g] = tile[g];
-      }
-      run_section<Form, W, G>(c, s, t, part);
+    const double* shared = k.x[0] + n;
+    size section = 0;
+    if (k.shared_input && last > 0) run_section<Form, W, G, kFirst>(groups, section++, part, shared);
+    for (; section < last; ++section) run_section<Form, W, G, kInside>(groups, section, part, shared);
+    if (k.shared_input && last == 0) {
+      run_section<Form, W, G, kFirst | kLast>(groups, last, part, shared);
+    } else {
+      run_section<Form, W, G, kLast>(groups, last, part, shared);
     }
-    for (int g = 0; g < G; ++g) {
-      const size lane = (first + static_cast<size>(g)) * kLanes;
-      const size lanes = k.lanes - lane < kLanes ? k.lanes - lane : kLanes;
-      for (size l = 0; l < lanes; ++l) y[l] = k.y[lane + l] + n;
-      scatter<W>(tile[g], lanes, part, y);
-    }
-    if (part == left) finite = settle(states, G * k.sections * 2 * kLanes) && finite;
+    if (part == left) finite = settle<W>(groups[0].states, G * k.sections * 2 * kLanes) && finite;
     n += part;
   }
   return finite;
@@ -223,7 +284,7 @@ template <template <int> class Form>
       Form<1>::step(c, s[0], s[kLanes], u);
     }
     k.y[0][n] = u;
-    if ((position + n + 1) % kTile == 0) finite = settle(k.states, k.sections * 2 * kLanes) && finite;
+    if ((position + n + 1) % kTile == 0) finite = settle<2>(k.states, k.sections * 2 * kLanes) && finite;
   }
   return finite;
 }

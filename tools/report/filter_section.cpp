@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostFilters = 16;  ///< of a bank that are drawn; the rest stands in result.json
 constexpr std::size_t kFewFilters = 4;    ///< whose phases and impulse responses can still be told apart
-constexpr double kLeastDecibel = -120.0;  ///< below, a zero of the response would fill the drawing
+constexpr double kLeastDecibel = -120.0;  ///< below, the curve is left out: zeros would fill the drawing
 
 struct Curves {
   const Array* frequency = nullptr;
@@ -64,7 +64,7 @@ Chart response_chart(const Record& record, const Curves& c) {
     std::vector<bool> trusted;
     for (std::size_t k = 0; k < c.frequency->size(); ++k) {
       const std::complex<double> h = c.response->at(k * c.filters() + i);
-      gain.y.push_back(std::max(decibel(std::abs(h)), kLeastDecibel));
+      gain.y.push_back(decibel(std::abs(h)) > kLeastDecibel ? decibel(std::abs(h)) : kNaN);
       degrees.push_back(std::arg(h) * 180.0 / std::numbers::pi);
       trusted.push_back(decibel(std::abs(h)) > kLeastDecibel);
     }

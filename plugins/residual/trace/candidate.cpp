@@ -1,6 +1,7 @@
 #include "trace/candidate.hpp"
 
 #include <algorithm>
+#include <bodeflow/numerics/chi_squared.hpp>
 #include <cmath>
 
 #include "records/signals.hpp"
@@ -38,6 +39,27 @@ bool wrong_sign(const Candidate& c) {
     if ((p.low == 0.0 && v < 0.0) || (p.high == 0.0 && v > 0.0)) return true;
   }
   return false;
+}
+
+/// What is one value in all records can't be told from 0, so that all it explains are the levels that every record has for
+/// itself.
+std::string levels_alone(const Levels& levels, const Candidate& c) {
+  if (!c.with.fit.polished) return "";
+  const Eigen::VectorXd values = c.values(), std = c.std();
+  const double most = numerics::chi_squared_limit(levels.p_candidate(), 1.0);
+  bool own_levels = false;
+  std::string names;
+  for (std::size_t i = 0; i < c.addition.parameters.size(); ++i) {
+    const FitParameter& p = c.addition.parameters[i];
+    const auto n = static_cast<Eigen::Index>(i);
+    own_levels = own_levels || p.each_record;
+    if (p.each_record) continue;
+    if (!(values[n] * values[n] < most * std[n] * std[n])) return "";
+    names += (names.empty() ? "" : " and ") + p.name;
+  }
+  return own_levels && !names.empty()
+             ? names + " can't be told from 0: all it explains are levels that differ from record to record"
+             : "";
 }
 
 double sum_of_gains(const Measurements& records, const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
@@ -103,7 +125,7 @@ bool look_only(const Attempt& attempt, Candidate& c) {
 double Examined::smallest_p() const {
   double least = 1.0;
   for (const RecordTests& record : tests)
-    for (const ClassTest& t : record.classes) least = std::min(least, t.p);
+    for (const ClassTest& t : record.classes) least = std::isfinite(t.p + t.multiple) ? std::min(least, t.p) : 0.0;
   return least;
 }
 
@@ -230,6 +252,8 @@ void judge(const Levels& levels, bool share_counts, bool floor_known, Candidate&
   } else if (floor_known && share_counts && !(c.added_share > kLeastShare)) {
     c.reason = "adds " + short_number(100.0 * c.added_share, 2) + " % to what is explained, needed above " +
                short_number(100.0 * kLeastShare, 2) + " %";
+  } else if (const std::string none = levels_alone(levels, c); !none.empty()) {
+    c.reason = none;
   } else if (const std::string weak = floor_known ? "" : weakness(levels, c); !weak.empty()) {
     c.reason = "hardly supported: " + weak;
   } else {

@@ -148,7 +148,7 @@ Expected<Trace> trace(std::shared_ptr<const BaseModel> base, const Catalogue& ca
   if (!after) return tl::unexpected(after.error());
   t.test_after = std::move(*after);
   t.after = data.test->error(t.test_after.residual);
-  if (t.added() && t.after.leak()) t.verdict = Verdict::unexplained;
+  if (t.added() && (t.after.leak() || !(t.after.error < t.before.error))) t.verdict = Verdict::unexplained;
   return t;
 }
 

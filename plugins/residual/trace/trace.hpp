@@ -42,7 +42,8 @@ struct Trace {
 ///
 /// Method: search, then the verdict. `none`: no effect is accepted and every class passes. `named`: what was found explains what
 /// is missing (where the noise floor is unknown: something was accepted; nobody can say whether it is all). `not_separable`: so
-/// do others. `unexplained`: something is left, or the error on the test record is below what noise can leave (a leak). All
+/// do others. `unexplained`: something is left, or the error on the test record is below what noise can leave (a leak) or
+/// does not fall. All
 /// levels follow from `alpha`. Bias: an effect that is not in the catalogue but acts like one of them within the noise takes its
 /// name. Errors: those of the base model's start and fit; records that do not belong together. Throws Failure as the base model's
 /// `starts` does.

@@ -121,6 +121,11 @@ std::string finding(const Trace& t, const std::string& unit) {
            errors(t, unit);
   }
   const std::string rest = remainder(t);
+  if (t.searched.explains) {
+    return "Something is missing that none of the known effects explains" + (rest.empty() ? "" : " (" + rest + ")") +
+           ". The nearest is " + t.searched.found.back().addition.label +
+           ", but with it the error on data not used at all does not fall. Nothing is named. " + errors(t, unit);
+  }
   return "Something is missing that none of the known effects explains" + (rest.empty() ? "" : " (" + rest + ")") + ". " +
          nearest(t) + " " + errors(t, unit);
 }

@@ -4,6 +4,7 @@
 #include "catch.hpp"
 #include "fake_measurement.hpp"
 #include "trace/trace.hpp"
+#include "trace/words.hpp"
 
 using namespace bodeflow;
 using namespace bodeflow::residual;
@@ -247,6 +248,43 @@ TEST_CASE("tracing: the p of an effect that is not there is uniform, bound, sear
   }
   CHECK(uniformity(of_bump) > 0.001);
   CHECK(uniformity(of_ripple) > 0.001);
+}
+
+TEST_CASE("tracing: levels that differ from record to record are not called by an effect that has a rate beside them") {
+  FakeLaw law{"runaway",
+              {real("rate", "A", 1.0), real("level", "A", 1.0).own_in_each_record()},
+              {{0.0, 0.5}},
+              [](const double* p, double n, double) { return p[0] * line(n, 1.0) + p[1]; }};
+  const Catalogue one = {fake_effect(law)};
+  const Trace levels = traced([](double, double l) { return l > 0.85 ? 1.0 : -0.7; }, 15, one);
+  CHECK(levels.verdict == Verdict::unexplained);
+  CHECK(levels.searched.steps.front().candidates.front().reason ==
+        "rate can't be told from 0: all it explains are levels that differ from record to record");
+  const Trace rate = traced([](double n, double l) { return 2.0 * line(n, l) + (l > 0.85 ? 1.0 : -0.7); }, 15, one);
+  CHECK(names(rate) == std::vector<std::string>{"runaway"});
+}
+
+TEST_CASE("tracing: what does not lower the error on the test record is not named") {
+  const auto hidden = [](double n, double l) { return 0.8 * wave(n, l); };
+  TraceData d = records(hidden, 16);
+  FakeRecord without;
+  without.name = "test";
+  without.level = 0.9;
+  without.seed = 163;
+  d.test = measure(without);
+  const Trace t = trace(std::make_shared<FakeBase>(), catalogue(), d, {}).value();
+  CHECK(names(t) == std::vector<std::string>{"ripple"});
+  CHECK(t.verdict == Verdict::unexplained);
+  CHECK(finding(t, "A").find("The nearest is ripple, but with it the error on data not used at all does not fall.") !=
+        std::string::npos);
+}
+
+TEST_CASE("tracing: a class that could not be tested has not passed") {
+  Examined x;
+  x.tests = {{"fit 1", {{"excited", 1.0, 0.4}, {"odd", std::nan(""), 1.0}}}};
+  CHECK(x.smallest_p() == 0.0);
+  x.tests = {{"fit 1", {{"excited", 1.0, 0.4}, {"odd", 1.1, 0.2}}}};
+  CHECK(x.smallest_p() == 0.2);
 }
 
 TEST_CASE("tracing: the same bits for the same records") {

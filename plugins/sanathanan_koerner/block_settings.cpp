@@ -14,11 +14,11 @@ constexpr double kMostStates = 1e6;
 
 States read_states(const std::string& text) {
   if (text == "all") return {};
-  if (text == "auto") return {true, {}};
+  if (text == "auto" || text == "gilbert") return {true, text == "gilbert", {}};
   const auto value = convert(text, "1");
   if (!value || !(*value >= 0.0 && *value <= kMostStates) || *value != std::floor(*value))
-    fail("states: '" + text + "'; allowed: all, auto, or a number from 0 on");
-  return {true, static_cast<Eigen::Index>(*value)};
+    fail("states: '" + text + "'; allowed: all, auto, gilbert, or a number from 0 on");
+  return {true, false, static_cast<Eigen::Index>(*value)};
 }
 
 std::optional<Eigen::Index> read_order(const std::string& text) {
@@ -82,8 +82,8 @@ void describe_method(Describe& d) {
   d.parameter("states", "all")
       .doc(
           "of several inputs and outputs, where each pole has as many states as there are inputs or outputs: all; auto: the "
-          "balanced truncation with the fewest states that changes the response by less than half the error of the fit; or their "
-          "number");
+          "balanced truncation with the fewest states that changes the response by less than half the error of the fit; gilbert: "
+          "by the same rule, of each pole as many as the rank of its residues; or their number");
   d.parameter("refine", false).doc("nonlinear least squares from the result on (Gauss-Newton)");
 }
 

@@ -53,12 +53,14 @@ Expected<Fit> with_denominator(const Data& data, const Plane& plane, const Eigen
 /// d(z) at the lines with its unstable roots reflected: each factor z - p becomes (z - 1/conj(p)) |p|. Gives how many there were.
 Eigen::Index reflect(const Eigen::VectorXcd& roots, const Eigen::VectorXcd& z, Eigen::VectorXcd& denominator);
 
-/// Pre-warp frequencies to try: `count` from the geometric mean of the range to ten times that. Seven are enough: the error is
-/// flat around the best.
-Eigen::VectorXd prewarp_candidates(const Eigen::VectorXd& omega_rad_s, Eigen::Index count = 7);
+/// Pre-warp frequencies to try: `count` from the geometric mean of the range to ten times that.
+Eigen::VectorXd prewarp_candidates(const Eigen::VectorXd& omega_rad_s, Eigen::Index count = 5);
 
-/// `fit` in continuous time at the pre-warp frequency whose first iterates are best. Errors: as fit, of the last candidate, where
-/// none of them gives a model.
+/// d(z) of given poles (in s or z) at the lines, up to a factor.
+Eigen::VectorXcd denominator_of(const Eigen::VectorXcd& poles, const Plane& plane, const Eigen::VectorXd& omega_rad_s);
+
+/// `fit` in continuous time from several starts, the best of them (race.hpp): d = 1 at each of the pre-warp frequencies, which is
+/// (s + a)^order, and the first poles of vector fitting. Errors: as fit, of the first start, where none of them gives a model.
 Expected<Fit> fit_with_scan(const Data& data, const FitSettings& settings);
 
 }  // namespace bodeflow::sanathanan_koerner

@@ -55,6 +55,16 @@ void add_uncertainty(const Data& data, const Settings& settings, Identification&
   id.uncertainty = std::move(*sure);
 }
 
+Expected<Reduction> fewer_states(const Data& data, const Settings& settings, Eigen::Index inputs, const Identification& id) {
+  if (!settings.states.by_residues) return reduced_states(data, reshaped(id.system, inputs), id.response, settings.states);
+  if (settings.sample_time_s > 0.0) return unexpected("states: gilbert is for models in s; take auto");
+  const auto poles = pole_set(id.poles);
+  if (!poles) return unexpected("states: " + poles.error().text);
+  const auto model = fit_residues(data, *poles);
+  if (!model) return unexpected("states: " + model.error().text);
+  return gilbert_states(data, *model, id.response, inputs);
+}
+
 }  // namespace
 
 Expected<Identification> identify(const Data& data, const Settings& settings, Eigen::Index inputs,
@@ -80,7 +90,7 @@ Expected<Identification> identify(const Data& data, const Settings& settings, Ei
   id.course = std::move(found->course);
   id.refinement = std::move(found->refinement);
   if (settings.states.reduce) {
-    auto fewer = reduced_states(data, reshaped(id.system, inputs), id.response, settings.states);
+    auto fewer = fewer_states(data, settings, inputs, id);
     if (!fewer) return unexpected(fewer.error().text);
     id.poles = paired(fewer->poles);
     id.response = fewer->response;

@@ -9,8 +9,6 @@
 namespace bodeflow::sanathanan_koerner {
 namespace {
 
-using Complex = std::complex<double>;
-
 FitSettings fit_settings(const Settings& s, Eigen::Index order) { return {order, s.weight_exponent, s.stable, s.stop}; }
 
 Expected<Fit> monomial_scan(const Data& data, const FitSettings& settings) {
@@ -43,18 +41,6 @@ Data strongest_column(const Data& data, Eigen::Index inputs) {
   Data one{data.omega_rad_s, data.response.middleCols(column * outputs, outputs), data.weights};
   if (!data.common_weights()) one.weights = data.weights.middleCols(column * outputs, outputs);
   return one;
-}
-
-/// d(z) of given poles at the lines, as a product of factors of bounded size.
-Eigen::VectorXcd denominator_of(const Eigen::VectorXcd& poles, const Plane& plane, const Eigen::VectorXd& omega) {
-  Eigen::VectorXcd d = Eigen::VectorXcd::Ones(omega.size());
-  for (const Complex p : poles) {
-    for (Eigen::Index k = 0; k < omega.size(); ++k) {
-      const Complex s(0.0, omega[k]);
-      d[k] *= (s - p) / (plane.prewarp_rad_s - s);
-    }
-  }
-  return d;
 }
 
 Expected<Fitted> finished(const Data& data, Expected<Fit> f, const Settings& s, std::optional<double> prewarp) {
@@ -96,7 +82,8 @@ Expected<Fitted> by_vector_fitting(const Data& data, const Settings& s, Eigen::I
   }
   if (s.refine && order > 0) {
     const Eigen::VectorXcd poles = all_poles(model.poles);
-    const Plane plane{std::sqrt(prewarp_candidates(data.omega_rad_s)[0] * data.omega_rad_s[data.lines() - 1]), 0.0};
+    const Eigen::VectorXd candidates = prewarp_candidates(data.omega_rad_s);
+    const Plane plane{candidates[candidates.size() / 2], 0.0};
     auto start = with_denominator(data, plane, denominator_of(poles, plane, data.omega_rad_s), order);
     if (!start) return unexpected("refinement: " + start.error().text);
     const Course course = result.course;

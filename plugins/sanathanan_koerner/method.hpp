@@ -29,7 +29,7 @@ struct Settings {
   double sample_time_s = 0.0;           ///< 0: continuous time
   std::optional<double> prewarp_rad_s;  ///< nothing: by a scan
   double weight_exponent = 1.0;
-  Spacing initial_poles = Spacing::linear;
+  Spacing initial_poles = Spacing::automatic;
   Columns columns = Columns::stacked;
   bool stable = true;
   bool refine = false;

@@ -1,7 +1,6 @@
 #include "model_block.hpp"
 
 #include "block_settings.hpp"
-#include "emission.hpp"
 
 namespace bodeflow::sanathanan_koerner {
 
@@ -25,15 +24,7 @@ void ModelBlock::describe(Describe& d) {
   d.reference("D. A. Jue, Frequency domain system identification with a rational, multi-band, curve-fitting approach, 1998");
   d.reference(
       "P. D. Brubeck, Y. Nakatsukasa, L. N. Trefethen, Vandermonde with Arnoldi, SIAM Review 63, 2021, doi:10.1137/19M130100X");
-  d.message_in(response)
-      .record_type("frequency_response")
-      .doc("any number of inputs and outputs; the last that arrives is taken");
-  d.message_in(repeat).record_type("frequency_response").optional().doc("the same measured again, to choose the order by");
-  d.message_out(model).record_type("model").doc("at the end");
-  d.message_out(order_scan).record_type("order_scan").doc("errors and criteria over the order, where the order is sought");
-  d.message_out(residual).record_type("residual").doc("what the model leaves, line by line");
-  describe_method(d);
-  describe_selection(d);
+  describe_common(d);
   d.parameter("domain", "s").choices({"s", "z"}).doc("a model in s, or in z at the sample rate of the response");
   describe_prewarp(d);
   d.parameter("basis", "orthonormal")
@@ -46,8 +37,7 @@ void ModelBlock::describe(Describe& d) {
 
 void ModelBlock::configure(const Parameters& p) {
   Settings s;
-  read_method(p, s);
-  selection_ = read_selection(p);
+  read_common(p, s);
   in_z_ = p.text("domain") == "z";
   s.prewarp_rad_s = read_prewarp(p);
   if (in_z_ && s.prewarp_rad_s) fail("prewarp is for domain: s; a model in z has its lines on the circle");
@@ -56,29 +46,12 @@ void ModelBlock::configure(const Parameters& p) {
   settings_ = s;
 }
 
-void ModelBlock::receive(int port, const RecordView& record, Io&) {
-  auto measured = read_measured(record, selection_);
-  if (!measured) fail(measured.error().text);
-  (port == response.index ? measured_ : repeated_) = std::move(*measured);
-}
-
-void ModelBlock::finish(Io& io) {
-  if (!measured_) fail("no frequency response arrived");
+Settings ModelBlock::settings_for(const Measured& measured) const {
   Settings s = settings_;
-  if (in_z_) {
-    if (measured_->sample_time_s == 0.0) fail("domain: z needs a response with its sample rate");
-    s.sample_time_s = measured_->sample_time_s;
-  }
-  const Emission made = identified("sanathanan_koerner.model", *measured_, repeated_, s);
-  io.emit(model, made.model);
-  if (made.order_scan) io.emit(order_scan, *made.order_scan);
-  io.emit(residual, made.residual);
-  for (const std::string& warning : made.warnings) log_warning(warning);
-}
-
-void ModelBlock::reset() {
-  measured_.reset();
-  repeated_.reset();
+  if (!in_z_) return s;
+  if (measured.sample_time_s == 0.0) fail("domain: z needs a response with its sample rate");
+  s.sample_time_s = measured.sample_time_s;
+  return s;
 }
 
 }  // namespace bodeflow::sanathanan_koerner

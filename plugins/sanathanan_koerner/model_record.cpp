@@ -23,15 +23,6 @@ std::string unit_of(const std::string& name, const std::string& response_unit) {
   return bare ? "rad/s" : response_unit + " rad/s";
 }
 
-void add_parameters(const Identification& id, const Measured& measured, records::ModelData& m) {
-  if (!id.fractions || !id.uncertainty || id.uncertainty->covariance.size() == 0) return;
-  m.parameters = id.fractions->values;
-  m.parameter_names = id.fractions->names;
-  m.covariance = id.uncertainty->covariance;
-  const std::string unit = records::common_unit(measured.units);
-  for (const std::string& name : m.parameter_names) m.parameter_units.push_back(unit_of(name, unit));
-}
-
 void add_signals(const Measured& measured, records::ModelData& m) {
   m.input_name = measured.inputs.names.front();
   m.output_name = measured.outputs.names.front();
@@ -41,8 +32,9 @@ void add_signals(const Measured& measured, records::ModelData& m) {
 
 void add_reduction(const Reduction& reduction, Eigen::Index order, RecordBuilder& r) {
   r.set("fitted_poles", static_cast<std::int64_t>(order));
-  r.set("states_before", static_cast<std::int64_t>(reduction.hankel_singular_values.size()));
+  r.set("states_before", static_cast<std::int64_t>(reduction.states_before));
   r.set("reduction_change", reduction.rms_change);
+  if (reduction.hankel_singular_values.size() == 0) return;
   r.set("reduction_bound", reduction.error_bound);
   if (std::isfinite(reduction.gap())) r.set("hankel_gap", reduction.gap());
   records::put_list<double>(r, "hankel_singular_values", "", reduction.hankel_singular_values);
@@ -66,7 +58,7 @@ records::ModelData described(const Identification& id, const Measured& measured,
       if (const auto zeros = numerics::roots(numerics::trimmed(tf->numerator))) m.zeros = *zeros;
     }
   }
-  add_parameters(id, measured, m);
+  if (id.fractions && id.uncertainty) add_parameters(*id.fractions, *id.uncertainty, measured, m);
   add_signals(measured, m);
   m.warnings = warnings;
   m.conventions = {id.system.sample_time > 0.0
@@ -88,6 +80,16 @@ records::ModelData described(const Identification& id, const Measured& measured,
 }
 
 }  // namespace
+
+void add_parameters(const FractionParameters& parameters, const Uncertainty& uncertainty, const Measured& measured,
+                    records::ModelData& m) {
+  if (uncertainty.covariance.size() == 0) return;
+  m.parameters = parameters.values;
+  m.parameter_names = parameters.names;
+  m.covariance = uncertainty.covariance;
+  const std::string unit = records::common_unit(measured.units);
+  for (const std::string& name : m.parameter_names) m.parameter_units.push_back(unit_of(name, unit));
+}
 
 std::optional<numerics::TransferFunction> faithful_polynomials(const numerics::StateSpace& system, const Eigen::VectorXcd& poles,
                                                                const Eigen::VectorXd& omega, const Eigen::MatrixXcd& response) {

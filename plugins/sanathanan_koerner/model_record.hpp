@@ -6,6 +6,7 @@
 
 #include "identification.hpp"
 #include "measured.hpp"
+#include "records/model.hpp"
 
 namespace bodeflow::sanathanan_koerner {
 
@@ -17,6 +18,10 @@ namespace bodeflow::sanathanan_koerner {
 /// lines), `reduction_bound`, `hankel_gap`; array `hankel_singular_values`, and `order` is the number of states.
 RecordBuilder model_record(const Identification& id, const Measured& measured, const std::string& method,
                            const std::vector<std::string>& warnings);
+
+/// Puts the parameters of the partial fractions and their covariance, where it is known, into what a model record is made from.
+void add_parameters(const FractionParameters& parameters, const Uncertainty& uncertainty, const Measured& measured,
+                    records::ModelData& model);
 
 /// The record `order_scan`: attributes `chosen`, `rule`; arrays `order`, `parameter_count`, `cost`, `relative_error`, `aic`,
 /// `mdl`, `odd_even_error`, `repeat_error` (NaN where there is none).

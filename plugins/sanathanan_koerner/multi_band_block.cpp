@@ -90,7 +90,7 @@ void MultiBandBlock::finish(Io& io) {
   if (!record) fail(record.error().text);
   io.emit(model, *record);
   io.emit(log, band_log_record(*found));
-  io.emit(residual, residual_record(*measured_, found->response, "sanathanan_koerner.multi_band"));
+  io.emit(residual, band_residual_record(*found, *measured_));
   for (const std::string& warning : warnings) log_warning(warning);
 }
 

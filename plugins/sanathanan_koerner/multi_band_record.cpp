@@ -1,11 +1,14 @@
 #include "multi_band_record.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "model_record.hpp"
 #include "records/model.hpp"
 #include "records/record_arrays.hpp"
+#include "records/response_units.hpp"
 #include "records/signals.hpp"
 
 namespace bodeflow::sanathanan_koerner {
@@ -56,6 +59,23 @@ Expected<RecordBuilder> multi_band_record(const MultiBandFit& fit, const Measure
   records::put_matrix(r, "band_edges", "Hz", edges);
   records::put_list<double>(r, "band_order", "1", orders);
   records::put_list<double>(r, "band_prewarp", "rad/s", prewarps);
+  return r;
+}
+
+RecordBuilder band_residual_record(const MultiBandFit& fit, const Measured& measured) {
+  RecordBuilder r = residual_record(measured, fit.response, "sanathanan_koerner.multi_band");
+  const auto count = static_cast<Eigen::Index>(fit.bands.size()), lines = measured.data.lines();
+  Eigen::MatrixXd edges(count, 2);
+  Eigen::MatrixXcd models(count * lines, measured.data.channels());
+  for (Eigen::Index b = 0; b < count; ++b) {
+    const BandModel& band = fit.bands[static_cast<std::size_t>(b)];
+    edges.row(b) << kHz * band.low_rad_s, kHz * band.high_rad_s;
+    models.middleRows(b * lines, lines) = band.fit.response;
+  }
+  records::put_matrix(r, "band_edges", "Hz", edges);
+  const auto shape = std::array{static_cast<std::uint64_t>(count), static_cast<std::uint64_t>(lines),
+                                static_cast<std::uint64_t>(measured.data.channels())};
+  records::put<std::complex<double>>(r, "band_response", records::common_unit(measured.units), shape, models);
   return r;
 }
 

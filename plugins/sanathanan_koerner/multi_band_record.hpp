@@ -20,6 +20,10 @@ Expected<RecordBuilder> multi_band_record(const MultiBandFit& fit, const Measure
 /// did not take part) and `error` (of the sum).
 RecordBuilder band_log_record(const MultiBandFit& fit);
 
+/// The record `residual` of residual_record with, in addition, `band_edges` [Hz] (bands x 2) and `band_response` (bands x lines x
+/// responses), the models of the bands at the lines.
+RecordBuilder band_residual_record(const MultiBandFit& fit, const Measured& measured);
+
 /// What the user should know of it.
 std::vector<std::string> multi_band_warnings(const MultiBandFit& fit, const MultiBandSettings& settings);
 

@@ -7,6 +7,16 @@ namespace bodeflow::sanathanan_koerner {
 
 using Complex = std::complex<double>;
 
+namespace {
+
+/// 1 / (x + j y), where neither square overflows: rates below 1e150 rad/s.
+Complex inverse(double x, double y) {
+  const double square = x * x + y * y;
+  return {x / square, -y / square};
+}
+
+}  // namespace
+
 Expected<PoleSet> pole_set(const Eigen::VectorXcd& poles) {
   const auto split = numerics::split_roots(poles);
   if (!split) return unexpected("the poles: " + split.error().text);
@@ -25,18 +35,20 @@ Eigen::VectorXcd all_poles(const PoleSet& poles) {
 }
 
 Eigen::MatrixXcd partial_fractions_at(const PoleSet& poles, const Eigen::VectorXd& omega) {
-  const Complex j(0.0, 1.0);
   Eigen::MatrixXcd f(omega.size(), poles.order() + 1);
   Eigen::Index n = 0;
   for (const Complex p : poles.pairs) {
     for (Eigen::Index k = 0; k < omega.size(); ++k) {
-      const Complex above = 1.0 / (j * omega[k] - p), below = 1.0 / (j * omega[k] - std::conj(p));
+      const Complex above = inverse(-p.real(), omega[k] - p.imag()), below = inverse(-p.real(), omega[k] + p.imag());
       f(k, n) = above + below;
-      f(k, n + 1) = j * (above - below);
+      f(k, n + 1) = {below.imag() - above.imag(), above.real() - below.real()};  // j (above - below)
     }
     n += 2;
   }
-  for (const double p : poles.real) f.col(n++) = (j * omega.cast<Complex>().array() - p).inverse();
+  for (const double p : poles.real) {
+    for (Eigen::Index k = 0; k < omega.size(); ++k) f(k, n) = inverse(-p, omega[k]);
+    ++n;
+  }
   f.col(n).setOnes();
   return f;
 }

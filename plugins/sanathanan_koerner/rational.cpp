@@ -1,7 +1,7 @@
 #include "rational.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <bodeflow/numerics/hessenberg_eigenvalues.hpp>
 #include <cmath>
 #include <string>
 
@@ -27,10 +27,9 @@ Expected<Eigen::VectorXcd> roots_of(const Eigen::MatrixXd& h, const Eigen::Vecto
   const auto K = colleague_matrix(h, c);
   if (!K) return unexpected(K.error().text);
   if (K->rows() == 0) return Eigen::VectorXcd();
-  if (!K->allFinite()) return unexpected("the denominator is not finite");
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(*K, false);
-  if (solver.info() != Eigen::Success) return unexpected("the poles were not found: the eigenvalues did not converge");
-  return Eigen::VectorXcd(solver.eigenvalues());
+  auto found = numerics::hessenberg_eigenvalues(*K);  // the last column alone is not that of h
+  if (!found) return unexpected("the poles were not found: " + found.error().text);
+  return std::move(*found);
 }
 
 Expected<numerics::StateSpace> state_space(const Rational& model) {

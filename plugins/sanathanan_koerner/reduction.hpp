@@ -6,12 +6,14 @@
 #include <optional>
 
 #include "data.hpp"
+#include "partial_fractions.hpp"
 
 namespace bodeflow::sanathanan_koerner {
 
 /// How many states a model of several inputs and outputs may keep.
 struct States {
   bool reduce = false;
+  bool by_residues = false;           ///< Gilbert's realisation in place of a balanced truncation
   std::optional<Eigen::Index> count;  ///< nothing: as few as change the response by less than half the fit's error
 };
 
@@ -19,9 +21,10 @@ struct States {
 struct Reduction {
   numerics::StateSpace system;
   Eigen::VectorXcd poles;
-  Eigen::MatrixXcd response;               ///< at the lines, columns stacked
-  Eigen::VectorXd hankel_singular_values;  ///< of the model before, in falling order
-  double error_bound = 0.0;                ///< of the largest change of the response over frequency
+  Eigen::MatrixXcd response;  ///< at the lines, columns stacked
+  Eigen::Index states_before = 0;
+  Eigen::VectorXd hankel_singular_values;  ///< of the model before, in falling order; empty of Gilbert's realisation
+  double error_bound = 0.0;                ///< of the largest change of the response over frequency, by balanced truncation
   double rms_change = 0.0;                 ///< of the response over lines and channels
   double relative_error = 0.0;             ///< weighted residual of the reduced model over the weighted data
 
@@ -38,5 +41,14 @@ struct Reduction {
 /// response: of `full` at the lines. Errors: a model that is not stable; more states than it has.
 Expected<Reduction> reduced_states(const Data& data, const numerics::StateSpace& full, const Eigen::MatrixXcd& response,
                                    const States& states);
+
+/// Gilbert's realisation of a model in partial fractions, whose residues may have a lower rank than inputs and outputs allow.
+///
+/// Method: numerics::gilbert_realisation with residues by least squares; of the tolerances 0.1, 0.01, .. for their singular
+/// values the largest whose change of the response at the lines, in their weights, is no more than half the error of the fit. All
+/// poles stay. response: of the fit at the lines; inputs: the channels are that many columns. Errors: those of fit_residues; no
+/// tolerance is small enough.
+Expected<Reduction> gilbert_states(const Data& data, const PartialFractions& model, const Eigen::MatrixXcd& response,
+                                   Eigen::Index inputs);
 
 }  // namespace bodeflow::sanathanan_koerner

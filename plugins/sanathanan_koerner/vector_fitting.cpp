@@ -1,10 +1,12 @@
 #include "vector_fitting.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <bodeflow/numerics/hessenberg_eigenvalues.hpp>
 #include <cmath>
+#include <optional>
 
 #include "elimination.hpp"
+#include "race.hpp"
 #include "stacked.hpp"
 
 namespace bodeflow::sanathanan_koerner {
@@ -82,10 +84,9 @@ Expected<Relocated> relocated(const PoleSet& poles, const Eigen::VectorXd& sigma
   const Eigen::Index M = poles.order();
   const ModalPair modal = modal_pair(poles);
   const Eigen::MatrixXd zeros = modal.A - modal.b * sigma.head(M).transpose() / sigma[M];
-  if (!zeros.allFinite()) return unexpected("the equations of the poles are not finite");
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(zeros, false);
-  if (solver.info() != Eigen::Success) return unexpected("the poles were not found: the eigenvalues did not converge");
-  auto next = pole_set(solver.eigenvalues());
+  const auto found = numerics::eigenvalues(zeros);
+  if (!found) return unexpected("the poles were not found: " + found.error().text);
+  auto next = pole_set(*found);
   if (!next) return unexpected(next.error().text);
   Relocated r{std::move(*next), 0};
   if (!stable) return r;
@@ -102,12 +103,82 @@ Expected<Relocated> relocated(const PoleSet& poles, const Eigen::VectorXd& sigma
   return r;
 }
 
+/// The range of all lines without one at 0.
+Eigen::Vector2d whole_range(const Eigen::VectorXd& omega) {
+  const double last = omega[omega.size() - 1] > 0.0 ? omega[omega.size() - 1] : 1.0;
+  if (omega[0] > 0.0) return {omega[0], last};
+  return {omega.size() > 1 ? omega[1] : last, last};
+}
+
+/// The iteration from some poles, one iterate after the other.
+class Relocation {
+ public:
+  Relocation(const Data& data, const Eigen::VectorXd& shared, double norm, const VectorFittingSettings& settings, PoleSet start)
+      : data_(&data), shared_(&shared), norm_(norm), settings_(settings), now_{std::move(start), 0} {}
+
+  bool advance() {
+    if (!course_.reason.empty()) return false;
+    if (!functions_) functions_.emplace(fractions(*data_, *shared_, now_.poles));
+    if (!functions_->columns.allFinite()) return end("a pole lies on a line");
+    if (now_.poles.order() > 0) {
+      auto next = relocated(now_.poles, sigma(), settings_.stable);
+      if (!next) return end(next.error().text);
+      now_ = std::move(*next);
+      functions_.emplace(fractions(*data_, *shared_, now_.poles));
+      if (!functions_->columns.allFinite()) return end("a pole lies on a line");
+    }
+    PartialFractions model = residues_in(*data_, *shared_, now_.poles, *functions_);
+    Eigen::MatrixXcd fitted = response(model, data_->omega_rad_s);
+    if (note(course_, weighted_residual(*data_, fitted).norm() / norm_))
+      best_ = {std::move(model), std::move(fitted), now_.mirrored, {}};
+    return !should_stop(course_, settings_.stop) && now_.poles.order() > 0;
+  }
+
+  const Course& course() const { return course_; }
+
+  Expected<VectorFit> result() && {
+    if (course_.best < 0) return unexpected("no model of order " + std::to_string(now_.poles.order()) + ": " + course_.reason);
+    best_.course = std::move(course_);
+    return std::move(best_);
+  }
+
+ private:
+  Eigen::VectorXd sigma() const {
+    Eigen::VectorXd relaxed = relaxed_sigma(*data_, *shared_, *functions_, norm_);
+    // In units of the columns, whatever the unit of frequency.
+    const Eigen::VectorXd scaled = relaxed.cwiseProduct(functions_->length);
+    const bool has_zeros = std::abs(scaled[scaled.size() - 1]) > kLeastMean * scaled.norm();
+    return has_zeros ? relaxed : plain_sigma(*data_, *functions_);
+  }
+
+  bool end(const std::string& why) {
+    course_.reason = why;
+    return false;
+  }
+
+  const Data* data_;
+  const Eigen::VectorXd* shared_;
+  double norm_;
+  VectorFittingSettings settings_;
+  Relocated now_;
+  std::optional<Fractions> functions_;  // of the poles now
+  VectorFit best_;
+  Course course_;
+};
+
+Expected<VectorFit> best_from(const Data& data, const VectorFittingSettings& settings, const std::vector<PoleSet>& starts) {
+  const Eigen::VectorXd shared = shared_weights(data);
+  const double norm = weighted_norm(data);
+  std::vector<Relocation> runners;
+  for (const PoleSet& start : starts) runners.emplace_back(data, shared, norm, settings, start);
+  Relocation* const best = race(runners);
+  return std::move(best != nullptr ? *best : runners.front()).result();
+}
+
 }  // namespace
 
-PoleSet initial_poles(const Eigen::VectorXd& omega, Eigen::Index order, Spacing spacing) {
-  const double last = omega[omega.size() - 1] > 0.0 ? omega[omega.size() - 1] : 1.0;
-  double first = omega[0];
-  if (first == 0.0) first = omega.size() > 1 ? omega[1] : last;
+PoleSet initial_poles(const Eigen::Vector2d& range, Eigen::Index order, Spacing spacing) {
+  const double first = range[0], last = range[1];
   const Eigen::Index pairs = order / 2;
   PoleSet poles;
   for (Eigen::Index n = 0; n < pairs; ++n) {
@@ -117,6 +188,14 @@ PoleSet initial_poles(const Eigen::VectorXd& omega, Eigen::Index order, Spacing 
   }
   if (order % 2 == 1) poles.real.push_back(-std::sqrt(first * last));
   return poles;
+}
+
+std::vector<PoleSet> starting_poles(const Data& data, Eigen::Index order, Spacing spacing) {
+  const Eigen::Vector2d active = active_range(data), whole = whole_range(data.omega_rad_s);
+  if (spacing != Spacing::automatic) return {initial_poles(active, order, spacing)};
+  if (order == 0) return {PoleSet{}};
+  return {initial_poles(active, order, Spacing::linear), initial_poles(whole, order, Spacing::linear),
+          initial_poles(whole, order, Spacing::logarithmic)};
 }
 
 Eigen::Vector2d active_range(const Data& data) {
@@ -133,8 +212,8 @@ Eigen::Vector2d active_range(const Data& data) {
     gone += way[last - 1];
     if (gone > rest) break;
   }
-  return last > first ? Eigen::Vector2d(data.omega_rad_s[first], data.omega_rad_s[last])
-                      : Eigen::Vector2d(data.omega_rad_s[0], data.omega_rad_s[steps]);
+  const Eigen::Vector2d whole = whole_range(data.omega_rad_s);
+  return last > first ? Eigen::Vector2d(std::max(data.omega_rad_s[first], whole[0]), data.omega_rad_s[last]) : whole;
 }
 
 Expected<PartialFractions> fit_residues(const Data& data, const PoleSet& poles) {
@@ -146,44 +225,14 @@ Expected<PartialFractions> fit_residues(const Data& data, const PoleSet& poles) 
 
 Expected<VectorFit> vector_fit(const Data& data, const VectorFittingSettings& settings) {
   if (auto good = check(data); !good) return unexpected(good.error().text);
-  return vector_fit(data, settings, initial_poles(active_range(data), settings.order, settings.initial_poles));
+  if (auto good = check_order(data, settings.order); !good) return unexpected(good.error().text);
+  return best_from(data, settings, starting_poles(data, settings.order, settings.initial_poles));
 }
 
 Expected<VectorFit> vector_fit(const Data& data, const VectorFittingSettings& settings, const PoleSet& start) {
   if (auto good = check(data); !good) return unexpected(good.error().text);
   if (auto good = check_order(data, start.order()); !good) return unexpected(good.error().text);
-  const Eigen::VectorXd q = shared_weights(data);
-  const double norm = weighted_norm(data);
-  VectorFit best;
-  Course course;
-  Relocated now{start, 0};
-  const auto give_up = [&](const std::string& why) -> Expected<VectorFit> {
-    if (course.best < 0) return unexpected("no model of order " + std::to_string(start.order()) + ": " + why);
-    course.reason = why;
-    best.course = course;
-    return std::move(best);
-  };
-  for (bool first = true;; first = false) {
-    const Fractions at = fractions(data, q, now.poles);
-    if (!at.columns.allFinite()) return give_up("a pole lies on a line");
-    if (!first || start.order() == 0) {
-      PartialFractions model = residues_in(data, q, now.poles, at);
-      Eigen::MatrixXcd fitted = response(model, data.omega_rad_s);
-      if (note(course, weighted_residual(data, fitted).norm() / norm))
-        best = {std::move(model), std::move(fitted), now.mirrored, {}};
-      if (should_stop(course, settings.stop) || start.order() == 0) break;
-    }
-    Eigen::VectorXd sigma = relaxed_sigma(data, q, at, norm);
-    // In units of the columns, whatever the unit of frequency.
-    const Eigen::VectorXd scaled = sigma.cwiseProduct(at.length);
-    if (!(std::abs(scaled[start.order()]) > kLeastMean * scaled.norm())) sigma = plain_sigma(data, at);
-    auto next = relocated(now.poles, sigma, settings.stable);
-    if (!next) return give_up(next.error().text);
-    now = std::move(*next);
-  }
-  if (course.best < 0) return give_up(course.reason);
-  best.course = course;
-  return best;
+  return best_from(data, settings, {start});
 }
 
 }  // namespace bodeflow::sanathanan_koerner

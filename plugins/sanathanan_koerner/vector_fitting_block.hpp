@@ -1,32 +1,20 @@
 #pragma once
 
-#include <bodeflow/block.hpp>
-#include <optional>
-
-#include "measured.hpp"
-#include "method.hpp"
+#include "identifier_block.hpp"
 
 namespace bodeflow::sanathanan_koerner {
 
 /// sanathanan_koerner.vector_fitting: a rational model of a frequency response by relaxed vector fitting.
-class VectorFittingBlock final : public Block {
+class VectorFittingBlock final : public IdentifierBlock {
  public:
-  static constexpr MessageIn response{0, "response"};
-  static constexpr MessageIn repeat{1, "repeat"};
-  static constexpr MessageOut model{0, "model"};
-  static constexpr MessageOut order_scan{1, "order_scan"};
-  static constexpr MessageOut residual{2, "residual"};
-
   static void describe(Describe& d);
   void configure(const Parameters& p) override;
-  void receive(int port, const RecordView& record, Io& io) override;
-  void finish(Io& io) override;
-  void reset() override;
 
  private:
+  std::string id() const override { return "sanathanan_koerner.vector_fitting"; }
+  Settings settings_for(const Measured&) const override { return settings_; }
+
   Settings settings_;
-  Selection selection_;
-  std::optional<Measured> measured_, repeated_;
 };
 
 }  // namespace bodeflow::sanathanan_koerner

@@ -12,17 +12,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// The product of z - p at the lines. On the unit circle its size is between the products of 1 - |p| and 1 + |p|; it is scaled
-/// factor by factor, because SK takes the weights' shape alone.
-Eigen::VectorXcd denominator_of(const Eigen::VectorXcd& poles, const Eigen::VectorXcd& z) {
-  Eigen::VectorXcd d = Eigen::VectorXcd::Ones(z.size());
-  for (const Complex& p : poles) {
-    d = d.cwiseProduct((z.array() - p).matrix());
-    d /= d.cwiseAbs().maxCoeff();
-  }
-  return d;
-}
-
 }  // namespace
 
 Expected<std::optional<Model>> polished(const Lines& lines, const Plane& plane, const Model& model, int iterations) {
@@ -31,7 +20,7 @@ Expected<std::optional<Model>> polished(const Lines& lines, const Plane& plane, 
   FitSettings settings;
   settings.order = model.order();
   settings.stop.iterations = iterations;
-  const auto found = fit(data, plane, settings, denominator_of(model.circle_poles, plane.circle(lines.omega_rad_s)));
+  const auto found = fit(data, plane, settings, denominator_of(model.poles, plane, lines.omega_rad_s));
   if (!found) return unexpected(found.error().text);
   auto system = state_space(found->model, lines.inputs());
   if (!system) return unexpected(system.error().text);

@@ -95,3 +95,21 @@ TEST_CASE("refinement: nonlinear least squares fits noisy ladders better than th
     CHECK(better->poles.real().maxCoeff() <= 0.0);
   }
 }
+
+TEST_CASE("several starts: the best few go on and end as low as the best start alone") {
+  for (const int order : {17, 31}) {
+    const Data data = ladder(order).noisy;
+    double best = INFINITY;
+    for (const double a : prewarp_candidates(data.omega_rad_s)) {
+      const auto alone = fit(data, Plane{a, 0.0}, {order, 1.0, true, {}});
+      REQUIRE(alone);
+      best = std::min(best, alone->error());
+    }
+    CHECK(fit_with_scan(data, {order, 1.0, true, {}})->error() <= 1.05 * best);
+    const auto one = vector_fit(data, {order, Spacing::linear, true, {}}),
+               several = vector_fit(data, {order, Spacing::automatic, true, {}});
+    REQUIRE(one);
+    REQUIRE(several);
+    CHECK(several->error() <= 1.05 * one->error());
+  }
+}

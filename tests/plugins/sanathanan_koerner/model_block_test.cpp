@@ -107,6 +107,17 @@ TEMPLATE_TEST_CASE("blocks: one input and output give polynomials too, so that e
   CHECK(scan.text("rule").value().find("the minimum of MDL") == 0);
 }
 
+TEMPLATE_TEST_CASE("blocks: the order of several inputs and outputs is found", "", ModelBlock, VectorFittingBlock) {
+  BlockDriver<TestType> block;
+  block.set("highest_order", std::int64_t{7});
+  run(block, response_record(true));
+  REQUIRE(block.records().size() == 3);
+  const RecordView model(*block.records()[0]), scan(*block.records()[1]);
+  CHECK(scan.integer("chosen").value() == 4);
+  CHECK(scan.array("order")->shape[0] == 7);
+  CHECK(records::read_linear_model(model)->state_space->states() == 8);
+}
+
 TEMPLATE_TEST_CASE("blocks: two modes that all inputs and outputs see in one way need two states each", "", ModelBlock,
                    VectorFittingBlock) {
   // Residues of rank 1: the entries of each mode are those of [1; 2] [1 3].
@@ -127,7 +138,7 @@ TEMPLATE_TEST_CASE("blocks: two modes that all inputs and outputs see in one way
   }
   d.variance = Eigen::MatrixXd::Constant(60, 4, 1e-8);
   const RecordBuilder response = records::write_response(d);
-  for (const char* states : {"auto", "4"}) {
+  for (const char* states : {"auto", "4", "gilbert"}) {
     BlockDriver<TestType> block;
     block.set("order", "4").set("states", states);
     run(block, response);
@@ -140,8 +151,10 @@ TEMPLATE_TEST_CASE("blocks: two modes that all inputs and outputs see in one way
     CHECK(worst_match(read->poles, Eigen::VectorXcd::Constant(1, std::complex<double>(-0.2, std::sqrt(100.0 - 0.04)))) < 1e-3);
     CHECK(model.integer("fitted_poles").value() == 4);
     CHECK(model.integer("states_before").value() == 8);
-    CHECK(model.number("hankel_gap").value() > 100.0);
-    CHECK(model.array("hankel_singular_values")->shape[0] == 8);
+    if (states != std::string("gilbert")) {
+      CHECK(model.number("hankel_gap").value() > 100.0);
+      CHECK(model.array("hankel_singular_values")->shape[0] == 8);
+    }
     CHECK(model.number("reduction_change").value() < 1e-4);
     CHECK(model.number("rms_error").value() == Approx(1e-4).epsilon(0.15));
     CHECK(*read->cost == Approx(240.0).epsilon(0.15));
@@ -202,7 +215,7 @@ TEST_CASE("sanathanan_koerner.model: parameters that can't be meant are refused 
   const RecordBuilder r = response_record(false, 1, 1);
   CHECK(refusal<ModelBlock>({{"order", "four"}}, r) == "order: 'four'; allowed: 0 to 1000, or auto");
   CHECK(refusal<ModelBlock>({{"order", "90"}}, r) == "order 90 with 1 response needs at least 91 lines; there are 60");
-  CHECK(refusal<ModelBlock>({{"states", "few"}}, r) == "states: 'few'; allowed: all, auto, or a number from 0 on");
+  CHECK(refusal<ModelBlock>({{"states", "few"}}, r) == "states: 'few'; allowed: all, auto, gilbert, or a number from 0 on");
   CHECK(refusal<ModelBlock>({{"order", "4"}, {"states", "9"}}, r) == "states: 9 states; allowed: 0 to 4");
   CHECK(refusal<ModelBlock>({{"prewarp", "20"}}, r) ==
         "prewarp: '20'; allowed: a frequency above 0 with its unit, such as 20 Hz, or auto");

@@ -137,6 +137,14 @@ TEST_CASE("sanathanan_koerner.multi_band: model and log and residual stand in th
   CHECK(read->state_space->states() == 12);
   CHECK(log.type() == "band_log");
   CHECK(log.array("iterations")->shape[1] == 2);
+  const RecordView residual(*block.records()[2]);
+  const auto bands = residual.array("band_response")->as<std::complex<double>>(),
+             sum = residual.array("model_response")->as<std::complex<double>>();
+  const std::size_t lines = sum.size();
+  REQUIRE(bands.size() == 2 * lines);
+  for (std::size_t k = 0; k < lines; ++k)
+    CHECK(std::abs(bands[k] + bands[lines + k] - sum[k]) <= 1e-12 * std::abs(sum[k]) + 1e-15);
+  CHECK(residual.array("band_edges")->shape.size() == 2);
   CHECK(model.number("relative_error").value() < 0.05);
   const bool poorer = model.number("relative_error").value() > model.number("one_band_error").value();
   CHECK(test::warnings_of(model).empty() != poorer);

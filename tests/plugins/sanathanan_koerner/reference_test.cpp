@@ -78,7 +78,8 @@ TEST_CASE("vector fitting: errors by iteration and poles and residues are those 
     const auto history = expected["hist"].get<std::vector<double>>();
     const Data data = c.data(noisy);
     const VectorFittingSettings settings{6, Spacing::linear, true, exactly(static_cast<int>(history.size()))};
-    const auto found = vector_fit(data, settings, initial_poles(data.omega_rad_s, 6, Spacing::linear));
+    const auto found =
+        vector_fit(data, settings, initial_poles({data.omega_rad_s[0], data.omega_rad_s[data.lines() - 1]}, 6, Spacing::linear));
     REQUIRE(found);
     for (std::size_t i = 0; noisy && i < 4; ++i) CHECK(found->course.errors[i] == Approx(history[i]).epsilon(1e-5));
     CHECK(found->error() == Approx(history.back()).epsilon(1e-9).margin(1e-13));

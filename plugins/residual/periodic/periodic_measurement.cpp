@@ -10,6 +10,7 @@
 #include "periodic/likely_input.hpp"
 #include "periodic/open_loop.hpp"
 #include "periodic/periodic_prediction.hpp"
+#include "periodic/periodic_views.hpp"
 #include "periodic/tones.hpp"
 #include "sampled/observations.hpp"
 #include "sampled/record_input.hpp"
@@ -152,6 +153,17 @@ class PeriodicMeasurement final : public Measurement {
       p.kind.push_back(static_cast<std::int64_t>(r_.kind[static_cast<std::size_t>(l)]));
     }
     return p;
+  }
+
+  std::vector<SeenOver> signals(const JointModel& model, const Eigen::VectorXd& values,
+                                const Eigen::VectorXd& residual) const override {
+    return signals_of(r_, model, values, unwhitened(r_, residual));
+  }
+  ResidualViews views(const Eigen::VectorXd& residual, const std::vector<SeenOver>& over) const override {
+    return views_of(r_, residual, over);
+  }
+  std::vector<ClassSize> class_sizes(const Eigen::VectorXd& residual) const override {
+    return residual::class_sizes(r_, residual);
   }
 
   std::vector<std::string> observations() const override { return observations_; }

@@ -18,7 +18,8 @@ constexpr double kRounding = 1e-9;
 constexpr double kFalseLine = 1e-6;
 // Lines of a designed excitation that are next in size differ by less than 10 dB in power.
 constexpr double kUneven = 10.0;
-// The band that is looked at ends above the last excited line: harmonics of what is missing show there.
+// The band that is looked at ends above the last excited line, below the Nyquist frequency: harmonics of what is missing show
+// there.
 constexpr double kBeyond = 1.25;
 constexpr Eigen::Index kSkirtBins = 2;
 // An input whose unexcited lines hold noise alone is cleared there: chance that noise alone looks like more.
@@ -261,11 +262,11 @@ Expected<PeriodicRecord> periodic_record(const records::Recording& recording, st
   }
   auto excited = excited_lines(recording, inputs, r.line_hz());
   if (!excited) return tl::unexpected(excited.error());
-  const auto lines = static_cast<Eigen::Index>(kBeyond * static_cast<double>(excited->back())) + 1;
-  if (lines > all) {
-    return refused("the last excited line is " + std::to_string(excited->back()) + " of " + std::to_string(all) +
-                   " below the Nyquist frequency; allowed: up to 0.8 of it, sample faster");
+  if (excited->back() >= all) {
+    return refused("the last excited line is " + std::to_string(excited->back()) + "; allowed: below the Nyquist frequency, " +
+                   std::to_string(all - 1) + " or less");
   }
+  const auto lines = std::min(static_cast<Eigen::Index>(kBeyond * static_cast<double>(excited->back())) + 1, all);
   const Eigen::VectorXcd bins = bins_of(recording.output.col(0).segment(begin, count));
   const Split s = split(bins, r.periods, lines, bin_hz);
   if (!(s.between_power.mean() > kRounding * kRounding * s.lines.cwiseAbs2().maxCoeff())) {

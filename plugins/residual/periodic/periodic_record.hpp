@@ -49,8 +49,8 @@ struct PeriodicRecord {
 /// from period to period. Measured inputs drive the model with their own noise, which adds |Y|^2 var(U) / |U|^2 at the excited
 /// lines, and as much for a unit of it at the mean and at other lines that drive the model; the lines that an input does not
 /// excite are set to zero where all of them hold no more than its noise. Errors, by name: other
-/// channels than the base has inputs, no period, fewer than 2 periods, no excited line, an excited line beyond 0.8 of the Nyquist
-/// frequency, an output without noise.
+/// channels than the base has inputs, no period, fewer than 2 periods, no excited line, one at or above the Nyquist frequency, an
+/// output without noise.
 Expected<PeriodicRecord> periodic_record(const records::Recording& recording, std::vector<double> known, const BaseModel& base);
 
 /// Where the whitened values of a bin stand: the real part of bin 0, then real and imaginary part of bin 1, 2 ...

@@ -124,6 +124,14 @@ TEST_CASE("periodic: rows are all bins up to 1.25 times the last excited line") 
   CHECK(picture.at.size() == 202);
 }
 
+TEST_CASE("periodic: the band ends below the Nyquist frequency where the excitation reaches near it") {
+  const Clean clean;
+  records::Recording r = clean.noisy(0.01, 3);
+  r.excited_lines = lines();
+  r.excited_lines.push_back(250);
+  CHECK(measured(r, *clean.base)->rows() == 2 * (255 * 6) + 1);
+}
+
 TEST_CASE("periodic: a wrong parameter shows at the excited lines alone, an offset at zero frequency alone") {
   const Clean clean;
   records::Recording r = clean.noisy(0.02, 4);
@@ -344,8 +352,8 @@ TEST_CASE("periodic: records that can't be judged are refused with the reason an
   r.period = 0;
   CHECK(refusal(r) == "the recording states no period; use the engine for given records");
   r = clean.noisy(0.01, 1);
-  r.excited_lines = {3, 250};
-  CHECK(refusal(r) == "the last excited line is 250 of 256 below the Nyquist frequency; allowed: up to 0.8 of it, sample faster");
+  r.excited_lines = {3, 256};
+  CHECK(refusal(r) == "the last excited line is 256; allowed: below the Nyquist frequency, 255 or less");
   r = clean.noisy(0.01, 1);
   r.output(700, 0) = std::numeric_limits<double>::quiet_NaN();
   CHECK(refusal(r) == "output 'position' is not finite at sample 700");

@@ -145,6 +145,9 @@ RecordBuilder record_of(const NetEvent& event, const std::vector<double>& omega)
     case Net::rate:
       cause = "the new controller is far from the one in use: it is approached step by step";
       break;
+    case Net::retreat:
+      cause = "the designed controller does worse than none: back to the proportional one, then lower demands";
+      break;
   }
   RecordBuilder r("net_action");
   r.set("net", std::string(name_of(event.net)));

@@ -1,5 +1,6 @@
 #include "design_block.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "block_settings.hpp"
@@ -24,7 +25,9 @@ void Design::describe(Describe& d) {
       "own "
       "poles, the residual and the sensitivity at the points keep their limits; else the demands are lowered along a ladder; if "
       "no "
-      "demand is met the last controller stays; and the controller moves by nets.rate of its way each sample. Each tells in "
+      "demand is met the last controller stays; the controller moves by nets.rate of its way each sample; and where `setpoint` "
+      "and `y` are connected, an output more than 3 half swings of the command off, or an error as large as the command, leads "
+      "back to the start controller for `pause` samples and to demands two steps lower. Each tells in "
       "`log` "
       "when it begins and ends. They are judged at the points alone: necessary, no proof of stability.");
   d.reference("P.-O. Kallen, Frequency Domain Adaptive Control, Lund 1992, chapters 3 and 7");
@@ -35,6 +38,7 @@ void Design::describe(Describe& d) {
       .doc("G_m at the frequencies, in place of A_m and its delay; there is no ladder then");
   d.parameter("start", 0.0).unit("s").range(0, 1e12).doc("time from which designed controllers are used");
   d.parameter("start_gain", 0.0).unit("").doc("of the proportional controller until then");
+  d.parameter("pause", std::int64_t{150}).range(0, 1e9).doc("samples with the start controller after a retreat");
   d.parameter("nets.checks", true).doc("designs beyond the limits are refused");
   d.parameter("nets.ladder", true).doc("demands are lowered where they can't be met");
   d.parameter("nets.rate", 0.1).above(0).range(0, 1).doc("share of the way to the new controller a sample; 1: no limit");
@@ -44,6 +48,8 @@ void Design::describe(Describe& d) {
   d.parameter("limits.residual", 0.5).above(0).doc("of the fit");
   d.parameter("limits.sensitivity", 2.5).above(1).doc("at the points; 4 for plants with an integrator and delay");
   d.stream_in(response).doc("one complex channel a frequency");
+  d.stream_in(setpoint).optional().doc("command; with y: watches the loop");
+  d.stream_in(y).optional().doc("output of the plant");
   d.stream_out(coefficients).doc("r1 .., s0 .., t0 .., and the anti-windup polynomial a1 .. = A_o");
   d.message_in(plan)
       .optional()
@@ -64,6 +70,7 @@ void Design::configure(const Parameters& p) {
   s.rate = p.number("nets.rate");
   s.limits = {p.number("limits.pole_radius"), p.number("limits.residual"), p.number("limits.sensitivity")};
   s.start_gain = p.number("start_gain");
+  s.pause = static_cast<int>(std::min<std::int64_t>(p.integer("pause"), 1'000'000'000));
   start_s_ = p.number("start");
   bandwidth_ = p.number("desired.bandwidth");
   omega_ = s.structure.omega;
@@ -109,6 +116,7 @@ void Design::activate(const Activation& a) {
 
 void Design::reset() {
   designer_ = value_or_fail(Designer::make(at(sample_time_)));
+  critical_frequency_ = value_or_fail(CriticalFrequency::make(settings_.desired, sample_time_));
   omega_ = settings_.structure.omega;
   last_ = Rst{};
 }
@@ -122,11 +130,14 @@ void Design::receive(int, const RecordView& record, Io& io) {
   s.desired.delay_s = found.desired_delay_s;
   s.start_gain = found.start_gain;
   designer_ = value_or_fail(Designer::make(s));
+  critical_frequency_ = value_or_fail(CriticalFrequency::make(s.desired, sample_time_));
   omega_ = found.omega;
 }
 
 void Design::process(Io& io) {
+  const bool watched = io.connected(setpoint) && io.connected(y);
   for (std::size_t n = 0; n < io.count(); ++n) {
+    if (watched) designer_->watch(io.read(y)[n], io.read(setpoint)[n]);
     for (std::size_t j = 0; j < points_.size(); ++j) points_[j] = io.read(response, static_cast<int>(j))[n];
     last_ = designer_->step(points_.data());
     write(io, n, last_);
@@ -157,10 +168,12 @@ void Design::finish(Io& io) {
   if (designer_->level() >= 0) {
     r.set("residual", designer_->accepted().residual);
     r.set("gain_ratio", designer_->accepted().gain_ratio);
+    r.set("critical_frequency", critical_frequency_.estimate(last_));
     r.set("sensitivity_at_points", sensitivity_at_points(designer_->design(0), last_, points_.data()));
   }
   r.set("samples_on_ladder", designer_->acted(Net::ladder));
   r.set("samples_kept", designer_->acted(Net::kept));
+  r.set("samples_in_retreat", designer_->acted(Net::retreat));
   r.set("samples_rate_limited", designer_->acted(Net::rate));
   io.emit(controller, r);
 }

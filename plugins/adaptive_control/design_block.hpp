@@ -3,6 +3,7 @@
 #include <bodeflow/block.hpp>
 #include <optional>
 
+#include "critical_frequency.hpp"
 #include "designer.hpp"
 
 namespace bodeflow::adaptive_control {
@@ -11,6 +12,7 @@ namespace bodeflow::adaptive_control {
 class Design final : public Block {
  public:
   static constexpr In<std::complex<double>> response{0, "response"};
+  static constexpr In<double> setpoint{1, "setpoint"}, y{2, "y"};
   static constexpr Out<double> coefficients{0, "coefficients"};
   static constexpr MessageIn plan{0, "plan"};
   static constexpr MessageOut controller{0, "controller"}, log{1, "log"};
@@ -32,6 +34,7 @@ class Design final : public Block {
   double start_s_ = 0.0, bandwidth_ = 1.0, sample_time_ = 1.0;
   std::vector<double> omega_;
   std::optional<Designer> designer_;
+  CriticalFrequency critical_frequency_;
   Rst last_;
   std::vector<std::complex<double>> points_;
 };

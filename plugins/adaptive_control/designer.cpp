@@ -15,6 +15,7 @@ std::string settings_error(const DesignerSettings& s) {
   }
   if (!(s.ladder_ratio > 0.0 && s.ladder_ratio < 1.0)) return "ladder ratio " + text_of(s.ladder_ratio) + "; allowed: 0 to 1";
   if (!(s.rate > 0.0 && s.rate <= 1.0)) return "rate " + text_of(s.rate) + "; allowed: above 0, up to 1";
+  if (s.pause < 0) return "pause after a retreat " + std::to_string(s.pause) + " samples; allowed: at least 0";
   if (!std::isfinite(s.start_gain)) return "start gain is not finite";
   return {};
 }
@@ -55,6 +56,7 @@ Expected<Designer> Designer::make(const DesignerSettings& s) {
   d.limits_ = s.limits;
   d.rate_ = s.rate;
   d.start_ = s.start;
+  d.pause_ = s.pause;
   Rst degrees;
   degrees.n_r = s.structure.n_r;
   degrees.n_s = s.structure.n_s;
@@ -62,6 +64,17 @@ Expected<Designer> Designer::make(const DesignerSettings& s) {
   d.start_controller_ = proportional(s.start_gain, degrees);
   d.anti_windup_ = d.ladder_[0].observer();
   return d;
+}
+
+void Designer::watch(double y, double u_c) {
+  const bool trusted = !adapted_ || paused_ > 0;
+  if (paused_ > 0) --paused_;
+  if (watchdog_.step(y, u_c, trusted)) {
+    paused_ = pause_;
+    found_any_ = false;  // the next accepted design is taken at once: its way begins at none
+    first_step_ = std::min(first_step_ + 2, ladder_.size() - 1);
+  }
+  tell(retreat_net_, paused_ > 0, Net::retreat, watchdog_.distance(), Watchdog::kOutput);
 }
 
 const Rst& Designer::step(const std::complex<double>* response) {
@@ -72,21 +85,24 @@ const Rst& Designer::step(const std::complex<double>* response) {
   tell(rate_net_, found && rate_ < 1.0 && distance_ > kToldDistance, Net::rate, distance_, rate_);
   adapted_ = adapted_ || (found_any_ && sample_ >= start_);
   ++sample_;
-  return adapted_ ? used_ : start_controller_;
+  return adapted_ && found_any_ && paused_ == 0 ? used_ : start_controller_;
 }
 
 std::int64_t Designer::acted(Net net) const {
-  return net == Net::ladder ? ladder_net_.acted() : net == Net::kept ? kept_net_.acted() : rate_net_.acted();
+  return net == Net::ladder    ? ladder_net_.acted()
+         : net == Net::kept    ? kept_net_.acted()
+         : net == Net::retreat ? retreat_net_.acted()
+                               : rate_net_.acted();
 }
 
 /// The fastest demands that give an acceptable controller, as accepted_ and level_.
 bool Designer::find(const std::complex<double>* response) {
-  for (std::size_t step = 0; step < ladder_.size(); ++step) {
+  for (std::size_t step = first_step_; step < ladder_.size(); ++step) {
     Verdict verdict{Refusal::no_solution, 0.0};
     if (ladder_[step].solve(response, candidate_)) {
       verdict = checks_ ? judge(ladder_[step], candidate_, response, limits_) : Verdict{};
     }
-    if (step == 0) verdict_ = verdict;
+    if (step == first_step_) verdict_ = verdict;
     if (verdict.refusal != Refusal::none) continue;
     accepted_ = candidate_;
     level_ = static_cast<int>(step);

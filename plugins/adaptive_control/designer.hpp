@@ -5,6 +5,7 @@
 
 #include "acceptance.hpp"
 #include "net_log.hpp"
+#include "watchdog.hpp"
 
 namespace bodeflow::adaptive_control {
 
@@ -20,6 +21,7 @@ struct DesignerSettings {
   double rate = 0.1;        ///< share of the way to a new controller that a sample takes; 1: all of it
   std::int64_t start = 0;   ///< sample from which designed controllers are used
   double start_gain = 0.0;  ///< until then u = start_gain (u_c - y)
+  int pause = 150;          ///< samples that the loop goes back to it after a retreat
 };
 
 /// Designs a controller at each sample and lets it through only if it is fit to run: demands that give no acceptable controller
@@ -33,7 +35,11 @@ class Designer {
   /// The controller for this sample, from the plant's response at the points. Allocates nothing.
   const Rst& step(const std::complex<double>* response);
 
-  /// Whether a designed controller is in use.
+  /// Watches the loop, before `step`: a designed controller with which output or error leave all bounds is given up for the start
+  /// controller for a while; demands are two steps of the ladder lower then.
+  void watch(double y, double u_c);
+
+  /// Whether a designed controller is in use, or was.
   bool adapted() const { return adapted_; }
   /// The anti-windup polynomial: A_o(z) of the demands as given, times z^(n_R - n_T).
   const Coefficients& anti_windup() const { return anti_windup_; }
@@ -62,9 +68,12 @@ class Designer {
   RstResult accepted_, candidate_;
   int level_ = -1;
   bool found_any_ = false, adapted_ = false;
+  int pause_ = 0, paused_ = 0;
+  std::size_t first_step_ = 0;
+  Watchdog watchdog_;
   double distance_ = 0.0;
   Verdict verdict_;
-  NetState ladder_net_, kept_net_, rate_net_;
+  NetState ladder_net_, kept_net_, rate_net_, retreat_net_{1};
   NetLog log_;
 };
 

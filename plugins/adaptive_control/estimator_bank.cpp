@@ -20,6 +20,8 @@ const char* name_of(Net net) {
       return "last controller kept";
     case Net::rate:
       return "rate limit";
+    case Net::retreat:
+      return "retreat";
   }
   return "";
 }

@@ -55,15 +55,17 @@ Expected<BandwidthLimit> largest_bandwidth(const RstStructure& structure, const 
   const auto first = question.good(1.0);
   if (!first) return refused(first.error().text);
   double good = 1.0, bad = 1.0;
+  bool bracketed = false;
   const double step = *first ? kStep : 1.0 / kStep;
   for (double factor = step; factor < kFurthest && factor > 1.0 / kFurthest; factor *= step) {
     const auto answer = question.good(factor);
     if (!answer) return refused(answer.error().text);
     (*answer ? good : bad) = factor;
-    if (*answer != *first) break;
+    bracketed = *answer != *first;
+    if (bracketed) break;
   }
-  if (good == 1.0 && !*first) return BandwidthLimit{};
-  for (int i = 0; i < 20 && bad != 1.0; ++i) {
+  if (!bracketed && !*first) return BandwidthLimit{};
+  for (int i = 0; i < 20 && bracketed; ++i) {
     const double middle = 0.5 * (good + bad);
     const auto answer = question.good(middle);
     (answer && *answer ? good : bad) = middle;

@@ -9,7 +9,7 @@
 namespace bodeflow::adaptive_control {
 
 /// The safety nets, in the order of the signals.
-enum class Net { excitation, covariance, huber, ladder, kept, rate };
+enum class Net { excitation, covariance, huber, ladder, kept, rate, retreat };
 
 /// The name of a net as it stands in records.
 const char* name_of(Net net);

@@ -11,10 +11,11 @@
 #include "induction_motor_block.hpp"
 #include "inverter_block.hpp"
 #include "power_meter_block.hpp"
+#include "property_change_block.hpp"
 #include "supply_block.hpp"
 #include "voltage_sensor_block.hpp"
 
 using namespace bodeflow::drive;
 
 BODEFLOW_PLUGIN("drive", "0.1.0", CurrentSensor, VoltageSensor, Encoder, HiddenEffectBlock, HiddenAxisEffect, AxisBlock,
-                FrictionFeedForward, CommandBuffer, Supply, PowerMeter, ClassicalTests, Inverter, InductionMotor)
+                FrictionFeedForward, CommandBuffer, Supply, PropertyChange, PowerMeter, ClassicalTests, Inverter, InductionMotor)

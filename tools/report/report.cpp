@@ -25,6 +25,7 @@ std::string kind_of(const std::string& type) {
                                                          {"model", "model"},
                                                          {"monte_carlo", "Monte Carlo"},
                                                          {"controller", "controller"},
+                                                         {"adaptive_run", "adaptive run"},
                                                          {"trace", "residual trace"},
                                                          {"reveal", "verdict and truth"},
                                                          {"sweep", "sweep"},
@@ -53,6 +54,7 @@ bool add_by_type(Page& page, const Record& record, std::span<const Response> res
   if (record.type == "whiteness") return add_whiteness(page, record);
   if (record.type == "residual") return add_residual(page, record);
   if (record.type == "controller") return add_controller(page, record);
+  if (record.type == "adaptive_run") return add_adaptive_run(page, record);
   if (record.type == "filter") return add_filter(page, record);
   if (record.type == "trace") return add_trace(page, record);
   if (record.type == "reveal") return add_reveal(page, record);

@@ -29,6 +29,8 @@ bool add_whiteness(Page& page, const Record& record);
 /// What a model leaves of a frequency response, by bands and line by line.
 bool add_residual(Page& page, const Record& record);
 bool add_controller(Page& page, const Record& record);
+/// An adaptive run: signals, Nyquist curve with the estimates, controllers over time.
+bool add_adaptive_run(Page& page, const Record& record);
 /// Frequency and impulse response of a filter as it was configured.
 bool add_filter(Page& page, const Record& record);
 bool add_trace(Page& page, const Record& record);

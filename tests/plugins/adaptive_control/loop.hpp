@@ -159,12 +159,14 @@ struct Conditions {
   double limit = 1e300;                ///< of |u|
   std::function<double(int)> gain;     ///< of the plant, 1 where empty
   std::function<double(int)> command;  ///< in place of the example's sequence
+  bool watched = true;  ///< by the designer
   bool known_plant = false;            ///< a controller designed with the true response from the start sample on
 };
 
 struct Run {
   std::vector<double> u_c, y, u, y_m;
   std::vector<std::vector<std::complex<double>>> response;  ///< estimates, sample by sample
+  bool adapted = false;                                     ///< a designed controller came into use
 
   double rms(int from, int to) const {
     double sum = 0.0;
@@ -202,11 +204,13 @@ inline Run run(const Example& e, const Conditions& c) {
     desired.input(u_c);
     bank->step(y, u_late, u_c);
     r.response.emplace_back(bank->response(), bank->response() + bank->points());
+    if (c.watched) designer->watch(y, u_c);
     const ac::Rst& rst = designer->step(c.known_plant ? truth.data() : bank->response());
     u_late = controller.step(y, u_c, rst, designer->anti_windup());
     r.u.push_back(u_late);
     plant.input(u_late + (k >= c.load_at ? c.load : 0.0));
   }
+  r.adapted = designer->adapted();
   return r;
 }
 

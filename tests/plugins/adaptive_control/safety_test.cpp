@@ -90,6 +90,7 @@ TEST_CASE("without nets a unit load makes example 2 diverge up to its actuator's
   Example e = example_2();
   without_nets(e);
   Conditions c;
+  c.watched = false;
   c.load_at = 400;
   c.limit = 10.0;
   CHECK(run(e, c).rms(400, 500) > 2.0);
@@ -157,4 +158,28 @@ TEST_CASE("every net that acts tells its cause and its sample") {
   CHECK(begun[ac::Net::huber] >= 1);
   CHECK(begun[ac::Net::ladder] >= 1);
   CHECK(begun[ac::Net::rate] >= 1);
+}
+
+TEST_CASE("a controller that a changed plant makes unstable is given up, and demands are lowered") {
+  Example e = example_1();
+  e.bank.point.forgetting = 0.99;
+  e.design.start_gain = 0.3;
+  Conditions c;
+  c.samples = 1500;
+  c.limit = 1e6;
+  c.gain = [](int k) {
+    return k < 300 ? 1.0 : 5.0;
+  };  // at once, beyond the gain margin of 3.4; that of the start controller is 9
+  const Run watched = run(e, c);
+  c.watched = false;
+  const Run unwatched = run(e, c);
+  const auto largest = [](const Run& r) {
+    double y = 0.0;
+    for (const double value : r.y) y = std::max(y, std::abs(value));
+    return y;
+  };
+  INFO(largest(watched) << " and " << largest(unwatched));
+  CHECK(largest(watched) < 0.1 * largest(unwatched));
+  CHECK(largest(watched) < 60.0);
+  CHECK(watched.rms(1200, 1500) < 0.3);  // with demands that are two steps lower
 }

@@ -138,6 +138,12 @@ class ResponseMeasurement final : public Measurement {
     return p;
   }
 
+  std::vector<ClassSize> class_sizes(const Eigen::VectorXd& residual) const override {
+    if (!floor_known()) return {};
+    const HeldOutError all = error(residual);
+    return {{"excited", all.error, all.floor}};
+  }
+
   std::vector<MeasuredResponse> response() const override {
     std::vector<MeasuredResponse> all;
     for (Eigen::Index j = 0; j < inputs(); ++j) {

@@ -14,6 +14,7 @@
 #include "sampled/record_residual.hpp"
 #include "sampled/record_spectra.hpp"
 #include "sampled/record_spectrum.hpp"
+#include "sampled/residual_looks.hpp"
 #include "sampled/what_is_left.hpp"
 
 namespace bodeflow::residual {
@@ -26,6 +27,7 @@ constexpr Eigen::Index kMostDrawn = 4000;
 // Rows of an excerpt, for records of at least so many: an effect that lowers the error by 2 % gains 96 on them.
 constexpr Eigen::Index kExcerpt = 2400, kLongRecord = 12000;
 constexpr Eigen::Index kRowsOfBase = 12288;
+constexpr std::size_t kMostPlaces = 3;  // whose flow and stored quantity a residual is looked at over
 
 class SampledMeasurement final : public Measurement {
  public:
@@ -68,6 +70,9 @@ class SampledMeasurement final : public Measurement {
   Gain gain(const Eigen::VectorXd& before, const Eigen::VectorXd& after) const override;
   HeldOutError error(const Eigen::VectorXd& residual) const override;
   ResidualPicture picture(const Eigen::VectorXd& residual) const override;
+  std::vector<SeenOver> signals(const JointModel& model, const Eigen::VectorXd& values,
+                                const Eigen::VectorXd& residual) const override;
+  ResidualViews views(const Eigen::VectorXd& residual, const std::vector<SeenOver>& over) const override;
   std::vector<std::string> observations() const override;
   std::vector<std::string> remarks(const Eigen::VectorXd& residual) const override;
   std::vector<MeasuredResponse> response() const override;
@@ -142,6 +147,39 @@ ResidualPicture SampledMeasurement::picture(const Eigen::VectorXd& residual) con
     p.residual[i] = unit_ * residual[row];
   }
   return p;
+}
+
+/// What the model predicts stands for the output: measured, it would hold the same noise as the residual.
+std::vector<SeenOver> SampledMeasurement::signals(const JointModel& model, const Eigen::VectorXd& values,
+                                                  const Eigen::VectorXd& residual) const {
+  const Eigen::VectorXd output = record_.rows_of(record_.output) - unit_ * residual;
+  std::vector<SeenOver> over = {
+      {"input", facts_.input_unit, record_.rows_of(record_.input.channel(0))},
+      {"output", facts_.output_unit, output},
+      {"slope of the output", facts_.output_unit + "/s", slope_of(output, row_time_s(), record_.layout.row_stretches)}};
+  const std::vector<Place> places = model.base->places();
+  if (places.empty()) return over;
+  const auto predicted = predict(record_, model, values, true);
+  for (std::size_t n = 0; predicted && n < std::min(places.size(), kMostPlaces); ++n) {
+    const auto column = static_cast<Eigen::Index>(n);
+    if (predicted->flow.cols() <= column) break;
+    over.push_back({"flow at " + places[n].name, places[n].flow_unit, record_.rows_of(predicted->flow.col(column))});
+    over.push_back({"stored at " + places[n].name, places[n].stored_unit, record_.rows_of(predicted->stored.col(column))});
+  }
+  return over;
+}
+
+ResidualViews SampledMeasurement::views(const Eigen::VectorXd& residual, const std::vector<SeenOver>& over) const {
+  const Eigen::VectorXd left = unit_ * residual;
+  const std::vector<Eigen::Index> samples = record_.row_samples();
+  Eigen::VectorXd time_s(left.size());
+  for (Eigen::Index n = 0; n < left.size(); ++n)
+    time_s[n] = static_cast<double>(samples[static_cast<std::size_t>(n)]) * record_.input.sample_time_s();
+  ResidualViews views;
+  for (const SeenOver& signal : over) views.maps.push_back(mean_map(left, signal.values));
+  views.course = course_by_blocks(left, time_s);
+  views.autocorrelation = autocorrelation(left, row_time_s(), record_.layout.row_stretches);
+  return views;
 }
 
 std::vector<std::string> SampledMeasurement::observations() const {

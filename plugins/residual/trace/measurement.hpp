@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/joint_model.hpp"
+#include "trace/residual_views.hpp"
 
 namespace bodeflow::residual {
 
@@ -122,6 +123,17 @@ class Measurement {
   virtual Gain gain(const Eigen::VectorXd& before, const Eigen::VectorXd& after) const = 0;
   virtual HeldOutError error(const Eigen::VectorXd& residual) const = 0;
   virtual ResidualPicture picture(const Eigen::VectorXd& residual) const = 0;
+
+  /// Over what `views` look at residuals, with a model that leaves `residual` at these values; empty where there is no course in
+  /// time.
+  virtual std::vector<SeenOver> signals(const JointModel& /*model*/, const Eigen::VectorXd& /*values*/,
+                                        const Eigen::VectorXd& /*residual*/) const {
+    return {};
+  }
+  /// What a report draws beside the picture, over signals of this record; empty where there is no course in time.
+  virtual ResidualViews views(const Eigen::VectorXd& /*residual*/, const std::vector<SeenOver>& /*over*/) const { return {}; }
+  /// The classes of `tests` in the unit of the error, those that are amounts; empty where the floor is unknown.
+  virtual std::vector<ClassSize> class_sizes(const Eigen::VectorXd& /*residual*/) const { return {}; }
 
   /// What the record itself shows, in sentences: clipping, coarse steps of a converter, a trend.
   virtual std::vector<std::string> observations() const { return {}; }

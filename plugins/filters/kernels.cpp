@@ -15,7 +15,6 @@ template <int W>
 struct Wide {
   typedef double type __attribute__((vector_size(8 * W), aligned(8 * W)));
   typedef double loose __attribute__((vector_size(8 * W), aligned(8)));
-  typedef long long mask __attribute__((vector_size(8 * W)));
 };
 
 template <>
@@ -23,23 +22,43 @@ struct Wide<1> {
   typedef double type;
 };
 
+template <int... I>
+struct Indices {};
+template <int W>
+struct UpTo;
+template <>
+struct UpTo<2> {
+  using type = Indices<0, 1>;
+};
+template <>
+struct UpTo<4> {
+  using type = Indices<0, 1, 2, 3>;
+};
+template <>
+struct UpTo<8> {
+  using type = Indices<0, 1, 2, 3, 4, 5, 6, 7>;
+};
+
+// Where element i of `pick` comes from: below W from a, from W on from b.
+constexpr int source(int W, bool whole, bool odd, int i) {
+  const int unit = i / 2, place = i % 2;
+  if (!whole) return 2 * unit + (odd ? 1 : 0) + place * W;
+  const int half = W < 4 ? 1 : W / 4;  // units that come from a
+  return (unit < half ? 0 : W) + 2 * (2 * (unit % half) + (odd ? 1 : 0)) + place;
+}
+
+template <int W, bool whole, bool odd, int... I>
+[[gnu::always_inline]] inline void pick(const typename Wide<W>::type& a, const typename Wide<W>::type& b,
+                                        typename Wide<W>::type& to, Indices<I...>) {
+  to = __builtin_shufflevector(a, b, source(W, whole, odd, I)...);
+}
+
 // to <- halves of a and b. Pairs of elements stand in units of 128 bits: with `whole` the even (odd) units of a, then those of b;
 // otherwise the even (odd) elements of a and b by turns. Instructions that stay within units are the quick ones.
 template <int W, bool whole, bool odd>
 [[gnu::always_inline]] inline void pick(const typename Wide<W>::type& a, const typename Wide<W>::type& b,
                                         typename Wide<W>::type& to) {
-  constexpr int kHalf = W < 4 ? 1 : W / 4;  // units that come from a
-  typename Wide<W>::mask order;
-  for (int i = 0; i < W; ++i) {
-    const int unit = i / 2, place = i % 2;
-    if (whole) {
-      const int from = 2 * (unit % kHalf) + odd;
-      order[i] = (unit < kHalf ? 0 : W) + 2 * from + place;
-    } else {
-      order[i] = 2 * unit + odd + place * W;
-    }
-  }
-  to = __builtin_shuffle(a, b, order);
+  pick<W, whole, odd>(a, b, to, typename UpTo<W>::type{});
 }
 
 // W x W values: column j of `row` becomes row j of `to`. First pairs of rows, then units at distances 2, 4, ...
@@ -220,7 +239,7 @@ template <int W>
   for (size i = 0; i < count; i += W) {
     V& s = *reinterpret_cast<V*>(states + i);
     wrong += s - s;
-    s = (s < kSilent) & (s > -kSilent) ? V{} : s;
+    s = ((s < kSilent) & (s > -kSilent)) ? V{} : s;
   }
   for (int i = 0; i < W; ++i) {
     if (!(wrong[i] == 0)) return false;

@@ -14,6 +14,11 @@ namespace {
 using records::short_number;
 using std::numbers::pi;
 
+// Of the record of a large bank.
+constexpr std::size_t kMostSamples = 65536;
+constexpr std::size_t kMostPoints = 30000;
+constexpr std::size_t kFewFilters = 16;  // that get more points around their poles
+
 constexpr double kSlowest = 1 - 1e-12;  // radius of a pole whose settling time is still told
 
 double largest_radius(const std::vector<BankFilter>& filters) {
@@ -30,11 +35,13 @@ double settling_samples(const std::vector<BankFilter>& filters) {
   return radius > 0 ? -5 / std::log(radius) : 0;
 }
 
-FilterCurve curve_of(const BankFilter& f, double rate_hz) {
+/// `all`: filters in the record, which share its room.
+FilterCurve curve_of(const BankFilter& f, double rate_hz, std::size_t all) {
   FilterCurve curve;
   curve.label = f.label;
   curve.response = [&f, rate_hz](double hz) { return f.response(2 * pi * hz / rate_hz); };
-  curve.impulse = settled(f.impulse_response(static_cast<std::size_t>(kMostImpulse)));
+  curve.impulse = settled(f.impulse_response(std::clamp<std::size_t>(kMostSamples / all, 16, kMostImpulse)));
+  if (all > kFewFilters) return curve;
   for (const auto pole : f.poles()) {
     const double to_hz = rate_hz / (2 * pi);
     if (pole.imag() > 0) curve.resonances.emplace_back(std::arg(pole) * to_hz, (1 - std::abs(pole)) * to_hz);
@@ -107,8 +114,9 @@ void SectionBlock::process(Io& io) {
 
 void SectionBlock::finish(Io& io) {
   std::vector<FilterCurve> curves;
-  for (const BankFilter& one : filters_) curves.push_back(curve_of(one, rate_hz_));
-  io.emit(filter, filter_record(kind(), rate_hz_, curves));
+  for (const BankFilter& one : filters_) curves.push_back(curve_of(one, rate_hz_, filters_.size()));
+  const std::size_t points = std::clamp<std::size_t>(kMostPoints / filters_.size(), 16, 300);
+  io.emit(filter, filter_record(kind(), rate_hz_, curves, static_cast<int>(points)));
 }
 
 void SectionBlock::reset() { bank_->reset(); }

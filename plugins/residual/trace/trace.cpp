@@ -149,6 +149,8 @@ Expected<Trace> trace(std::shared_ptr<const BaseModel> base, const Catalogue& ca
   t.test_after = std::move(*after);
   t.after = data.test->error(t.test_after.residual);
   if (t.added() && (t.after.leak() || !(t.after.error < t.before.error))) t.verdict = Verdict::unexplained;
+  t.classes_before = held_out_tests(t.searched.base.fit, t.test_before, *data.test);
+  t.classes_after = t.added() ? held_out_tests(t.extended().fit, t.test_after, *data.test) : t.classes_before;
   return t;
 }
 

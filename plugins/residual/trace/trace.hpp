@@ -30,6 +30,8 @@ struct Trace {
   Searched searched;
   HeldOut test_before, test_after;  ///< on the test record
   HeldOutError before, after;       ///< the same where nothing was added
+  /// Of the test record, told and not judged: by the base model, and by the model that is told.
+  std::vector<ClassTest> classes_before, classes_after;
   /// The probability of a smaller p of any test or candidate where nothing is missing.
   double p = 1.0;
 

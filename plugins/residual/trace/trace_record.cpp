@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "records/record_arrays.hpp"
+#include "trace/record_views.hpp"
 #include "trace/words.hpp"
 
 namespace bodeflow::residual {
@@ -46,6 +47,7 @@ void put_verdict(RecordBuilder& r, const Trace& t, const std::string& unit) {
   r.set("unit", unit).set("floor_known", t.floor_known).set("p", t.p);
   r.set("error_before", t.before.error).set("error_after", t.after.error).set("error_remedied", kNone);
   r.set("noise_floor", t.before.floor).set("noise_floor_99.9", t.floor_known ? t.before.highest : kNone);
+  r.set("noise_floor_0.01", t.floor_known ? t.before.lowest : kNone);
   r.set("excess_before", t.before.excess()).set("excess_after", t.after.excess());
   r.set("at_floor", t.floor_known && t.after.at_floor()).set("leak", t.after.leak());
   r.set("share_explained", t.added() ? t.searched.share : 0.0);
@@ -110,7 +112,16 @@ void put_tests(RecordBuilder& r, const char* multiple_name, const char* p_name, 
   fill(p_name, &ClassTest::p);
 }
 
-void put_classes(RecordBuilder& r, const Trace& t) {
+void put_one(RecordBuilder& r, const char* name, const std::vector<ClassTest>& tests, double ClassTest::*member,
+             const std::vector<std::string>& classes) {
+  const auto data = r.array<double>(name, "1", {classes.size()});
+  for (std::size_t c = 0; c < classes.size(); ++c) {
+    const auto test = std::find_if(tests.begin(), tests.end(), [&](const ClassTest& x) { return x.name == classes[c]; });
+    data[c] = test == tests.end() ? kNone : (*test).*member;
+  }
+}
+
+std::vector<std::string> put_classes(RecordBuilder& r, const Trace& t) {
   std::vector<std::string> classes, record_names;
   for (const RecordTests& record : t.searched.base.tests) {
     record_names.push_back(record.record);
@@ -120,6 +131,11 @@ void put_classes(RecordBuilder& r, const Trace& t) {
   r.set("class_names", classes).set("class_records", record_names).set("class_p_limit", t.searched.levels.p_class());
   put_tests(r, "class_before", "class_p_before", t.searched.base.tests, classes);
   put_tests(r, "class_after", "class_p_after", t.extended().tests, classes);
+  put_one(r, "test_class_before", t.classes_before, &ClassTest::multiple, classes);
+  put_one(r, "test_class_p_before", t.classes_before, &ClassTest::p, classes);
+  put_one(r, "test_class_after", t.classes_after, &ClassTest::multiple, classes);
+  put_one(r, "test_class_p_after", t.classes_after, &ClassTest::p, classes);
+  return classes;
 }
 
 void put_candidates(RecordBuilder& r, const Trace& t) {
@@ -199,11 +215,12 @@ RecordBuilder write_trace(const Trace& t, const TraceData& data, const Declared&
   put_verdict(r, t, data.test->facts().unit_of_error());
   put_effects(r, t, data.fit.size());
   put_base(r, t, declared);
-  put_classes(r, t);
+  put_sizes(r, t, data, put_classes(r, t));
   put_candidates(r, t);
   r.set("advice", advice(t, data)).set("remarks", data.test->remarks(t.test_after.residual));
   put_records(r, data, declared);
   put_pictures(r, t, *data.test);
+  put_views(r, t, *data.test);
   return r;
 }
 

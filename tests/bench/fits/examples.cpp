@@ -17,28 +17,6 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-Example measured(const std::string& name, const std::string& path, const std::vector<std::string>& quantities,
-                 std::optional<std::pair<double, double>> band_hz, std::vector<Eigen::Index> orders) {
-  auto table = bodeflow::acquisition::read_response(path, quantities);
-  if (!table) throw std::runtime_error(table.error().text);
-  const auto response = bodeflow::acquisition::assemble(std::move(*table), {quantities, band_hz});
-  if (!response) throw std::runtime_error(response.error().text);
-  const auto lines = static_cast<Eigen::Index>(response->frequency_hz.size());
-  const auto outputs = static_cast<Eigen::Index>(response->output_names.size());
-  const auto inputs = static_cast<Eigen::Index>(response->input_names.size());
-  Example e{name,
-            {Eigen::VectorXd(lines), Eigen::MatrixXcd(lines, outputs * inputs), Eigen::MatrixXd::Ones(lines, 1)},
-            inputs,
-            std::move(orders)};
-  for (Eigen::Index k = 0; k < lines; ++k) {
-    e.data.omega_rad_s[k] = kTurn * response->frequency_hz[static_cast<std::size_t>(k)];
-    for (Eigen::Index i = 0; i < outputs; ++i)
-      for (Eigen::Index j = 0; j < inputs; ++j)
-        e.data.response(k, j * outputs + i) = response->value[static_cast<std::size_t>((k * outputs + i) * inputs + j)];
-  }
-  return e;
-}
-
 /// A transformer ladder of the reference files, with .1 % noise.
 Example ladder(Eigen::Index order) {
   std::ifstream file(fmt::format("{}/ladder{}_frf.csv", BENCH_REFERENCE, order));
@@ -68,6 +46,28 @@ Example ladder(Eigen::Index order) {
 }
 
 }  // namespace
+
+Example measured(const std::string& name, const std::string& path, const std::vector<std::string>& quantities,
+                 std::optional<std::pair<double, double>> band_hz, std::vector<Eigen::Index> orders) {
+  auto table = bodeflow::acquisition::read_response(path, quantities);
+  if (!table) throw std::runtime_error(table.error().text);
+  const auto response = bodeflow::acquisition::assemble(std::move(*table), {quantities, band_hz});
+  if (!response) throw std::runtime_error(response.error().text);
+  const auto lines = static_cast<Eigen::Index>(response->frequency_hz.size());
+  const auto outputs = static_cast<Eigen::Index>(response->output_names.size());
+  const auto inputs = static_cast<Eigen::Index>(response->input_names.size());
+  Example e{name,
+            {Eigen::VectorXd(lines), Eigen::MatrixXcd(lines, outputs * inputs), Eigen::MatrixXd::Ones(lines, 1)},
+            inputs,
+            std::move(orders)};
+  for (Eigen::Index k = 0; k < lines; ++k) {
+    e.data.omega_rad_s[k] = kTurn * response->frequency_hz[static_cast<std::size_t>(k)];
+    for (Eigen::Index i = 0; i < outputs; ++i)
+      for (Eigen::Index j = 0; j < inputs; ++j)
+        e.data.response(k, j * outputs + i) = response->value[static_cast<std::size_t>((k * outputs + i) * inputs + j)];
+  }
+  return e;
+}
 
 std::vector<Example> examples() {
   std::vector<Example> list = {ladder(6), ladder(17), ladder(31)};

@@ -11,13 +11,11 @@ namespace {
 
 using bodeflow::sanathanan_koerner::Data;
 
-Method rational(const std::string& name, bodeflow::sanathanan_koerner::Method method, bool refine,
-                bodeflow::sanathanan_koerner::Spacing spacing = bodeflow::sanathanan_koerner::Spacing::linear) {
+Method rational(const std::string& name, bodeflow::sanathanan_koerner::Method method, bool refine) {
   return {name, [=](const Data& data, Eigen::Index ports, Eigen::Index order) -> std::optional<Model> {
             bodeflow::sanathanan_koerner::Settings settings;
             settings.method = method;
             settings.refine = refine;
-            settings.initial_poles = spacing;
             auto found = bodeflow::sanathanan_koerner::fitted(data, settings, order, ports);
             if (!found) return {};
             return Model{std::move(found->system), std::move(found->poles)};
@@ -45,8 +43,7 @@ std::vector<Method> methods() {
   return {rational("sanathanan_koerner", Method::arnoldi, false),
           rational("sanathanan_koerner, refined", Method::arnoldi, true),
           rational("vector_fitting", Method::vector_fitting, false),
-          rational("vector_fitting, logarithmic first poles", Method::vector_fitting, false,
-                   bodeflow::sanathanan_koerner::Spacing::logarithmic),
+          rational("vector_fitting, refined", Method::vector_fitting, true),
           subspace("subspace", 5),
           subspace("subspace, not polished", 0)};
 }

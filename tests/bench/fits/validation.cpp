@@ -1,10 +1,13 @@
 // What models of every second line leave at the lines between them, by method and order. Figures for the READMEs of
 // plugins/sanathanan_koerner and plugins/subspace; no peers, no times.
+//   fits_validation                  the examples
+//   fits_validation FILE ORDER ...   the responses of a file
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <exception>
+#include <string>
 
 #include "examples.hpp"
 #include "methods.hpp"
@@ -35,7 +38,14 @@ void validate(const bench::Example& e, Eigen::Index order) {
 
 }  // namespace
 
-int main() try {
+int main(int count, char** arguments) try {
+  if (count > 2) {
+    std::vector<Eigen::Index> orders;
+    for (int i = 2; i < count; ++i) orders.push_back(std::stol(arguments[i]));
+    const bench::Example one = bench::measured(arguments[1], arguments[1], {}, {}, orders);
+    for (const Eigen::Index order : orders) validate(one, order);
+    return 0;
+  }
   for (const bench::Example& e : bench::examples())
     for (const Eigen::Index order : e.orders) validate(e, order);
 } catch (const std::exception& problem) {

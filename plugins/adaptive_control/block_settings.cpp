@@ -10,7 +10,14 @@ namespace {
 
 constexpr int kMostPoles = 20;
 
-int whole(const Parameters& p, const char* name) { return static_cast<int>(p.integer(name)); }
+int whole(const Parameters& p, const char* name, int least, int most) {
+  const std::int64_t value = p.integer(name);
+  if (value < least || value > most) {
+    fail(std::string(name) + " is " + std::to_string(value) + "; allowed: " + std::to_string(least) + " to " +
+         std::to_string(most));
+  }
+  return static_cast<int>(value);
+}
 
 Eigen::VectorXd pattern(const Parameters& p, const std::string& group, int order, double omega) {
   const std::string kind = p.text((group + ".pattern").c_str());
@@ -72,9 +79,9 @@ DesiredResponse read_desired(const Parameters& p, int degree) {
   const double omega = p.number("desired.bandwidth");
   DesiredResponse desired;
   desired.a_m = p.has("desired.denominator") ? given_polynomial(p, "desired.denominator")
-                                             : pattern(p, "desired", whole(p, "desired.order"), omega);
+                                             : pattern(p, "desired", whole(p, "desired.order", 1, kMostPoles), omega);
   const double observer = p.has("observer.bandwidth") ? p.number("observer.bandwidth") : omega;
-  const int order = p.has("observer.order") ? whole(p, "observer.order") : degree;
+  const int order = p.has("observer.order") ? whole(p, "observer.order", 0, kMostOrder) : degree;
   desired.a_o =
       p.has("observer.denominator") ? given_polynomial(p, "observer.denominator") : pattern(p, "observer", order, observer);
   desired.delay_s = p.number("desired.delay");
@@ -93,8 +100,8 @@ void describe_structure(Describe& d) {
 RstStructure read_structure(const Parameters& p) {
   RstStructure s;
   s.omega = p.numbers("frequencies");
-  s.n_r = whole(p, "degree");
-  s.n_s = p.has("degree_s") ? whole(p, "degree_s") : s.n_r;
+  s.n_r = whole(p, "degree", 1, kMostOrder);
+  s.n_s = p.has("degree_s") ? whole(p, "degree_s", 0, kMostOrder) : s.n_r;
   s.r_p = vector_of(p.numbers("fixed_r"));
   s.s_p = vector_of(p.numbers("fixed_s"));
   s.weights = p.numbers("weights");

@@ -26,8 +26,8 @@ class Collected {
 
 void structure_advice(Collected& c, const RstStructure& s, int n_t) {
   c.judge(s.n_r >= 2 && s.n_r <= 4, "controller of order " + std::to_string(s.n_r), "2 to 4 is usual");
-  c.judge(s.r_p.size() > 1 && std::abs(s.r_p.sum()) < 1e-12, "prescribed factor of R",
-          "without (z - 1) constant disturbances leave an error at rest");
+  c.judge(s.r_p.size() > 1 && std::abs(s.r_p.sum()) < 1e-12, "integral action",
+          "without (z - 1) in R constant disturbances leave an error at rest");
   c.judge(s.n_s == s.n_r && n_t == s.n_r, "degrees of S and T are " + std::to_string(s.n_s) + " and " + std::to_string(n_t),
           "below that of R they delay the controller");
 }

@@ -71,9 +71,10 @@ void check_graphs(std::initializer_list<const char*> folders) {
 }  // namespace
 
 TEST_CASE(
-    "every graph of first_steps, measuring, drive and akcay_1999 runs as it stands, to the same bits for any chunk and thread "
+    "every graph of first_steps, measuring, drive, akcay_1999 and kallen_1992 runs as it stands, to the same bits for any chunk "
+    "and thread "
     "count, with a report") {
-  check_graphs({"first_steps", "measuring", "drive", "akcay_1999"});
+  check_graphs({"first_steps", "measuring", "drive", "akcay_1999", "kallen_1992"});
 }
 
 TEST_CASE("every graph of jue_1998 runs as it stands, to the same bits for any chunk and thread count, with a report", "[long]") {

@@ -149,7 +149,7 @@ TEST_CASE("advice names frequencies, demands and sampling that do not go togethe
   plant.forgetting = 0.9;
   const std::string text = all(ac::advice_before(bad.structure, bad.desired, plant).warnings);
   for (const char* expected :
-       {"prescribed factor of R: without (z - 1)", "degrees of S and T are 1 and 2: below that of R",
+       {"integral action: without (z - 1) in R", "degrees of S and T are 1 and 2: below that of R",
         "frequencies of fitting from 0.01 to 2 rad/s: spread them over about a decade",
         "highest frequency of fitting is 3.15457 times omega_-180", "0.2 to 0.6 is usual: sample faster",
         "bandwidth over omega_-180 is", "degree of A_m is 3, that of the plant 5", "delay of G_m 0 s, of the plant 2 s",

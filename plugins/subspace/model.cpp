@@ -110,7 +110,7 @@ void fit_inputs(const Lines& lines, const Eigen::VectorXcd& z, numerics::StateSp
     const Eigen::VectorXd w = row_weights(lines, k, size);
     rows.leftCols(unknowns) = w.asDiagonal() * F;
     rows.rightCols(lines.inputs()) = w.asDiagonal() * targets(lines, k, size);
-    triangle.add(rows);
+    triangle.add(std::move(rows));
     if (keep) kept = std::move(F);
   }
   Eigen::MatrixXd R = triangle.R().leftCols(unknowns).topRows(unknowns);

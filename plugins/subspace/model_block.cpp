@@ -133,8 +133,14 @@ void ModelBlock::finish(Io& io) {
   }
   const auto found = identify(*lines, plane_for(*lines), settings_, repeated);
   if (!found) fail(found.error().text);
-  const std::vector<std::string> warnings = model_warnings(*found, settings_);
-  io.emit(model, model_record(*found, *measured_, warnings));
+  // One weight a line is one over the deviation only where all entries have the same.
+  const bool known_variance = measured_->data.channels() == 1 && measured_->deviation.size() > 0 &&
+                              measured_->deviation.minCoeff() > 0.0 &&
+                              (weighting_ == Weighting::variance || weighting_ == Weighting::automatic);
+  Expected<ModelUncertainty> uncertainty = unexpected("it is that of a least-squares minimum; polish the model");
+  if (settings_.polish > 0) uncertainty = uncertainty_of(*lines, found->model, known_variance);
+  const std::vector<std::string> warnings = model_warnings(*found, uncertainty, settings_);
+  io.emit(model, model_record(*found, *measured_, uncertainty, known_variance, warnings));
   if (found->scan) io.emit(order_scan, order_scan_record(*found->scan));
   io.emit(residual, sanathanan_koerner::residual_record(*measured_, found->model.response, "subspace.model"));
   for (const std::string& warning : warnings) log_warning(warning);

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kPoor = 0.3;  // relative error above which a model explains little
 
-records::ModelData described(const Identification& id, const Measured& measured, const std::vector<std::string>& warnings) {
+records::ModelData described(const Identification& id, const Measured& measured, const Expected<ModelUncertainty>& uncertainty,
+                             const std::vector<std::string>& warnings) {
   records::ModelData m;
   const sanathanan_koerner::Data& data = measured.data;
   m.method = "subspace.model";
@@ -22,7 +23,10 @@ records::ModelData described(const Identification& id, const Measured& measured,
   m.order = id.model.order();
   m.sample_time_s = id.model.system.sample_time;
   m.state_space = id.model.system;
-  m.poles = id.model.poles;
+  m.poles = uncertainty ? uncertainty->poles : id.model.poles;
+  if (uncertainty) m.pole_covariance = uncertainty->of.poles;
+  if (uncertainty && uncertainty->parameters)
+    sanathanan_koerner::add_parameters(*uncertainty->parameters, uncertainty->of, measured, m);
   if (data.channels() == 1) {
     const auto tf = sanathanan_koerner::faithful_polynomials(id.model.system, m.poles, data.omega_rad_s, id.model.response);
     if (tf) {
@@ -48,8 +52,14 @@ records::ModelData described(const Identification& id, const Measured& measured,
 
 }  // namespace
 
-RecordBuilder model_record(const Identification& id, const Measured& measured, const std::vector<std::string>& warnings) {
-  RecordBuilder r = records::write_model(described(id, measured, warnings));
+RecordBuilder model_record(const Identification& id, const Measured& measured, const Expected<ModelUncertainty>& uncertainty,
+                           bool known_variance, const std::vector<std::string>& warnings) {
+  RecordBuilder r = records::write_model(described(id, measured, uncertainty, warnings));
+  if (uncertainty) {
+    std::string method = "inverse Fisher information";
+    if (measured.data.channels() > 1) method += " of poles with any residues: an upper bound";
+    r.set("covariance_method", known_variance ? method : method + ", noise from the residuals");
+  }
   r.set("rms_error", id.quality.rms);
   r.set("max_error", id.quality.maximum);
   r.set("relative_error", id.quality.weighted);
@@ -80,7 +90,8 @@ RecordBuilder order_scan_record(const OrderScan& scan) {
   return r;
 }
 
-std::vector<std::string> model_warnings(const Identification& id, const Settings& settings) {
+std::vector<std::string> model_warnings(const Identification& id, const Expected<ModelUncertainty>& uncertainty,
+                                        const Settings& settings) {
   std::vector<std::string> warnings;
   if (id.model.unstable > 0)
     warnings.push_back(records::counted(id.model.unstable, "pole") +
@@ -94,6 +105,7 @@ std::vector<std::string> model_warnings(const Identification& id, const Settings
   if (id.quality.weighted > kPoor)
     warnings.push_back("the model leaves " + records::short_number(100.0 * id.quality.weighted, 2) +
                        " % of the response unexplained: raise the order, or look for a delay");
+  if (!uncertainty) warnings.push_back("the model has no covariance: " + uncertainty.error().text);
   return warnings;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <bodeflow/numerics/products.hpp>
 #include <string>
 
 #include "row_triangle.hpp"
@@ -38,8 +39,8 @@ Expected<Range> short_range(const Lines& lines, const Plane& plane, Eigen::Index
   RowTriangle triangle(functions * lines.outputs);
   for (Eigen::Index input = 0; input < lines.inputs(); ++input) {
     Eigen::MatrixXd Y = products(f->values, lines, input, 0, lines.size());
-    for (int pass = 0; pass < 2; ++pass) Y.noalias() -= V * Eigen::MatrixXd(V.transpose() * Y);
-    triangle.add(Y);
+    for (int pass = 0; pass < 2; ++pass) numerics::add_product(Y, V, numerics::transposed_product(V, Y), -1.0);
+    triangle.add(std::move(Y));
   }
   return decomposed(f->rule, triangle.R());
 }
@@ -51,14 +52,14 @@ void add_projected(const Lines& lines, const LongFunctions& f, Eigen::Index inpu
   for (Eigen::Index k = 0; k < lines.size(); k += kBlock) {
     const Eigen::Index size = std::min(kBlock, lines.size() - k);
     const Eigen::MatrixXd V = f.block(k, size);
-    explained.noalias() += V.transpose() * products(V, lines, input, k, size);
+    explained += numerics::transposed_product(V, products(V, lines, input, k, size));
   }
   for (Eigen::Index k = 0; k < lines.size(); k += kBlock) {
     const Eigen::Index size = std::min(kBlock, lines.size() - k);
     const Eigen::MatrixXd V = f.block(k, size);
     Eigen::MatrixXd Y = products(V, lines, input, k, size);
-    Y.noalias() -= V * explained;
-    triangle.add(Y);
+    numerics::add_product(Y, V, explained, -1.0);
+    triangle.add(std::move(Y));
   }
 }
 
@@ -71,7 +72,7 @@ void add_factored(const Lines& lines, const LongFunctions& f, Eigen::Index input
     Eigen::MatrixXd rows(2 * size, functions + columns);
     rows.leftCols(functions) = f.block(k, size);
     rows.rightCols(columns) = products(rows.leftCols(functions), lines, input, k, size);
-    both.add(rows);
+    both.add(std::move(rows));
   }
   triangle.add(both.R().bottomRightCorner(both.R().rows() - functions, columns));
 }

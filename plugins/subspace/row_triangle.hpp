@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <bodeflow/numerics/stacked_qr.hpp>
 
 namespace bodeflow::subspace {
 
@@ -8,10 +9,10 @@ namespace bodeflow::subspace {
 /// without the squared condition of A'A. Memory: R and one block.
 class RowTriangle {
  public:
-  explicit RowTriangle(Eigen::Index columns) : R_(Eigen::MatrixXd::Zero(0, columns)) {}
+  explicit RowTriangle(Eigen::Index columns) : R_(Eigen::MatrixXd::Zero(columns, columns)) {}
 
-  void add(const Eigen::MatrixXd& rows);
-  /// min(rows, columns) x columns, upper triangular.
+  void add(Eigen::MatrixXd rows) { numerics::fold_rows(R_, rows); }
+  /// columns x columns, upper triangular.
   const Eigen::MatrixXd& R() const { return R_; }
 
  private:

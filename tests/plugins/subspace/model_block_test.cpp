@@ -98,6 +98,45 @@ TEST_CASE("subspace.model: responses of three inputs and two outputs give one sy
   CHECK(relative(subspace::response_of(*model->state_space, omega), test::lines_of(truth, omega).response) < 1e-3);
 }
 
+TEST_CASE("subspace.model: poles lie in their 95 % regions as often as they should") {
+  const Eigen::VectorXcd truth = example_2().poles.head(3);
+  int inside = 0, all = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Driver block;
+    block.set("order", "6");
+    run(block, response_record(false, seed, 1e-5));  // so small that three modes within 6 % of their frequencies stay apart
+    const RecordView record(*block.records()[0]);
+    const auto model = records::read_model(record);
+    REQUIRE(model);
+    const auto covariances = record.array("pole_covariance");
+    REQUIRE(covariances);
+    REQUIRE(covariances->size == 24);
+    CHECK(model->covariance.rows() == 13);
+    for (const Complex p : truth) {
+      Eigen::Index nearest = 0;
+      (model->poles.array() - p).abs().minCoeff(&nearest);
+      const Complex away = model->poles[nearest] - p;
+      const Eigen::Vector2d d(away.real(), away.imag());
+      const Eigen::Map<const Eigen::Matrix2d> covariance(covariances->as<double>().data() + 4 * nearest);
+      inside += d.dot(covariance.inverse() * d) < 5.991 ? 1 : 0;
+      ++all;
+    }
+  }
+  CHECK(inside >= 0.88 * all);  // 95 % expected; three deviations of 180
+  CHECK(inside < all);
+}
+
+TEST_CASE("subspace.model: where the model has no covariance it says why") {
+  Driver block;
+  block.set("order", "6").set("polish", std::int64_t{0});
+  run(block, response_record(false, 1, 1e-3));
+  const RecordView record(*block.records()[0]);
+  CHECK_FALSE(record.array("pole_covariance"));
+  const auto warnings = warnings_of(record);
+  CHECK(std::count(warnings.begin(), warnings.end(),
+                   "the model has no covariance: it is that of a least-squares minimum; polish the model") == 1);
+}
+
 TEST_CASE("subspace.model: refusals say what is allowed") {
   CHECK(refusal({{"order", "0"}}) == "order: '0'; allowed: 1 to 1000, or auto");
   CHECK(refusal({{"functions", "many"}}) == "functions: 'many'; allowed: 2 to 2000, or auto");

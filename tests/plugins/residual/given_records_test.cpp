@@ -90,6 +90,20 @@ TEST_CASE("given records: units that the base model can't have are refused where
   }
 }
 
+TEST_CASE("given records: the one that tells the error may be cut in segments of its own") {
+  GivenRecords given = only_fit({bench::record({}, 4.0, 1, 2)});
+  given.select = bench::record({}, 4.0, 2, 2);
+  given.test = bench::record({}, 4.0, 3, 2);
+  const Eigen::Index samples = recording_in(*given.test).samples();
+  const auto motor = declared_base<MotorStandstill>();
+  const auto alike = measurements_of(given, Engine::sampled, *motor, {}).value();
+  CHECK(alike.test->rows() == alike.fit[0]->rows());
+  const auto data = measurements_of(given, Engine::sampled, *motor, {}, 0.0, 0.5).value();
+  CHECK(data.fit[0]->rows() == alike.fit[0]->rows());
+  CHECK(data.fit[0]->rows() < samples);  // the first ones determine the state
+  CHECK(data.test->rows() == samples);   // all count, and each segment has a state
+}
+
 TEST_CASE("given records: a periodic one is split by whole periods, the skipped ones left out") {
   const records::Recording whole = bench::record({}, 4.0, 1, 7);
   const auto g = with_all_parts(only_fit({whole}), Engine::periodic).value();

@@ -52,7 +52,7 @@ bool add_by_type(Page& page, const Record& record, std::span<const Response> res
   if (record.type == "change") return add_change(page, record);
   if (record.type == "order_scan") return add_order_scan(page, record);
   if (record.type == "whiteness") return add_whiteness(page, record);
-  if (record.type == "residual") return add_residual(page, record);
+  if (record.type == "residual") return add_residual(page, record) || add_fitted_lines(page, record);
   if (record.type == "controller") return add_controller(page, record);
   if (record.type == "adaptive_run") return add_adaptive_run(page, record);
   if (record.type == "filter") return add_filter(page, record);

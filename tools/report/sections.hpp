@@ -28,6 +28,8 @@ bool add_order_scan(Page& page, const Record& record);
 bool add_whiteness(Page& page, const Record& record);
 /// What a model leaves of a frequency response, by bands and line by line.
 bool add_residual(Page& page, const Record& record);
+/// The same of a record with data and model line by line: percentage error, and of a sum of bands D. A. Jue's six panels a band.
+bool add_fitted_lines(Page& page, const Record& record);
 bool add_controller(Page& page, const Record& record);
 /// An adaptive run: signals, Nyquist curve with the estimates, controllers over time.
 bool add_adaptive_run(Page& page, const Record& record);

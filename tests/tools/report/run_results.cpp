@@ -206,6 +206,25 @@ ordered_json sweep() {
   return record;
 }
 
+/// Two filters, one of them zero at the last frequency.
+ordered_json filters() {
+  const int lines = 50, samples = 20;
+  return {{"type", "filter"},
+          {"attributes", {{"kind", "two low passes"}, {"sample_rate", 1000.0}, {"names", {"slow", "fast"}}}},
+          {"arrays",
+           {{"frequency", array_of("Hz", {lines}, list(lines, [](int k) { return 10.0 * (k + 1); }))},
+            {"response", array_of("", {lines, 2},
+                                  list(2 * lines,
+                                       [](int n) {
+                                         const double f = 10.0 * (n / 2 + 1);
+                                         const std::complex<double> low =
+                                             1.0 / std::complex<double>(1.0, f / (n % 2 == 0 ? 20.0 : 80.0));
+                                         return complex_json(n == 2 * lines - 1 ? std::complex<double>() : low);
+                                       }))},
+            {"time", array_of("s", {samples}, list(samples, [](int n) { return 1e-3 * n; }))},
+            {"impulse", array_of("", {samples, 2}, list(2 * samples, [](int n) { return std::pow(0.8, n / 2); }))}}}};
+}
+
 }  // namespace
 
 const char* const kHostile = "</title></style><script>alert(1)</script>\"'><img src=x onerror=alert(2)>&amp;{}]]>";
@@ -294,6 +313,7 @@ ordered_json results_of_all_types() {
         {"error_remedied", nullptr},
         {"noise_floor", 0.019}}},
       {"arrays", {{"effect_parameters", array_of("s", {1}, {1.5e-6})}, {"effect_parameter_std", array_of("s", {1}, {1e-7})}}}};
+  results["smoothing"] = filters();
   results["lag"] = {{"type", "delay_estimate"},
                     {"attributes", {{"delay", 0.0008}, {"standard_deviation", 1e-6}}},
                     {"arrays", ordered_json::object()}};

@@ -33,7 +33,7 @@ TEST_CASE("report: every record type has its section, figures and files") {
   const Folder folder;
   folder.write("result.json", test::result_with(test::results_of_all_types()).dump());
   const WrittenReport report = written(folder);
-  CHECK(report.records == 17);
+  CHECK(report.records == 18);
   const std::string page = folder.read("report.html");
   for (const char* text : {"id=\"response\"",
                            "id=\"matrix\"",
@@ -58,6 +58,8 @@ TEST_CASE("report: every record type has its section, figures and files") {
                            "0.1 to 5 Hz",
                            "without scatter all of them pass through the true variances",
                            "something_new",
+                           "Impulse response",
+                           "-3 dB from [Hz]",
                            "in 3 runs",
                            "only 6 periods: measure 12"}) {
     INFO(text);

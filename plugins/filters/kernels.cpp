@@ -14,7 +14,9 @@ constexpr double kSilent = 1e-290;
 template <int W>
 struct Wide {
   typedef double type __attribute__((vector_size(8 * W), aligned(8 * W)));
-  typedef double loose __attribute__((vector_size(8 * W), aligned(8)));
+  // Samples, coefficients and states in memory.
+  typedef double stored __attribute__((vector_size(8 * W), aligned(8 * W), may_alias));
+  typedef double loose __attribute__((vector_size(8 * W), aligned(8), may_alias));
 };
 
 template <>
@@ -171,10 +173,11 @@ template <template <int> class Form, int W, int G, int P, class Coefficients, cl
 [[gnu::always_inline]] inline void run_square(const Group* groups, const Coefficients& c, States& s, size n,
                                               const double* shared) {
   using V = typename Wide<W>::type;
+  using Stored = typename Wide<W>::stored;
   V out[G][W];
   for (int i = 0; i < W; ++i) {
     for (int g = 0; g < G; ++g) {
-      V x = reinterpret_cast<const V*>(groups[g].tile)[n + static_cast<size>(i)];
+      V x = reinterpret_cast<const Stored*>(groups[g].tile)[n + static_cast<size>(i)];
       if (P & kFirst) x = shared[n + static_cast<size>(i)] - V{};
       Form<W>::step(c[g][0], s[g][0][0], s[g][0][1], x);
       out[g][i] = x;
@@ -192,11 +195,13 @@ template <template <int> class Form, int W, int G, int P, class Coefficients, cl
 template <template <int> class Form, int W, int G, int P>
 [[gnu::always_inline]] inline void run_section(const Group* groups, size section, size count, const double* shared) {
   using V = typename Wide<W>::type;
+  using Stored = typename Wide<W>::stored;
   constexpr int kParts = static_cast<int>(kLanes) / W, kCoefficients = Form<W>::kCoefficients;
   V c[G][kParts][kCoefficients], s[G][kParts][2];
   for (int g = 0; g < G; ++g) {
-    const V* from = reinterpret_cast<const V*>(groups[g].coefficients) + section * static_cast<size>(kCoefficients * kParts);
-    const V* state = reinterpret_cast<const V*>(groups[g].states) + section * static_cast<size>(2 * kParts);
+    const Stored* from =
+        reinterpret_cast<const Stored*>(groups[g].coefficients) + section * static_cast<size>(kCoefficients * kParts);
+    const Stored* state = reinterpret_cast<const Stored*>(groups[g].states) + section * static_cast<size>(2 * kParts);
     for (int p = 0; p < kParts; ++p) {
       for (int i = 0; i < kCoefficients; ++i) c[g][p][i] = from[i * kParts + p];
       for (int i = 0; i < 2; ++i) s[g][p][i] = state[i * kParts + p];
@@ -210,7 +215,7 @@ template <template <int> class Form, int W, int G, int P>
     }
     for (size m = n; m < end; ++m) {
       for (int g = 0; g < G; ++g) {
-        V* tile = reinterpret_cast<V*>(groups[g].tile) + m * static_cast<size>(kParts);
+        Stored* tile = reinterpret_cast<Stored*>(groups[g].tile) + m * static_cast<size>(kParts);
         for (int p = 0; p < kParts; ++p) {
           V x = tile[p];
           if (P & kFirst) x = shared[m] - V{};
@@ -224,7 +229,7 @@ template <template <int> class Form, int W, int G, int P>
     }
   }
   for (int g = 0; g < G; ++g) {
-    V* state = reinterpret_cast<V*>(groups[g].states) + section * static_cast<size>(2 * kParts);
+    Stored* state = reinterpret_cast<Stored*>(groups[g].states) + section * static_cast<size>(2 * kParts);
     for (int p = 0; p < kParts; ++p) {
       for (int i = 0; i < 2; ++i) state[i * kParts + p] = s[g][p][i];
     }
@@ -235,11 +240,13 @@ template <template <int> class Form, int W, int G, int P>
 template <int W>
 [[gnu::always_inline]] inline bool settle(double* states, size count) {
   using V = typename Wide<W>::type;
+  using Stored = typename Wide<W>::stored;
   V wrong{};
   for (size i = 0; i < count; i += W) {
-    V& s = *reinterpret_cast<V*>(states + i);
+    Stored& state = *reinterpret_cast<Stored*>(states + i);
+    const V s = state;
     wrong += s - s;
-    s = ((s < kSilent) & (s > -kSilent)) ? V{} : s;
+    state = ((s < kSilent) & (s > -kSilent)) ? V{} : s;
   }
   for (int i = 0; i < W; ++i) {
     if (!(wrong[i] == 0)) return false;

@@ -6,6 +6,7 @@
 #include "block_settings.hpp"
 #include "coefficient_stream.hpp"
 #include "controller_record.hpp"
+#include "design_advice.hpp"
 #include "numbers_in_text.hpp"
 #include "plan_record.hpp"
 
@@ -106,6 +107,15 @@ void Design::resolve(Facts& f) {
   c.clock = g.clock;
   c.channel_names = layout.names();
   c.notes["rst.degrees"] = layout.note();
+}
+
+/// The list of section 7.4, as far as it can be judged without the plant.
+void Design::advise(const Facts& f, Advice& a) {
+  if (!f.in(response).known) return;
+  const DesignerSettings s = at(1.0 / f.in(response).rate.hz());
+  const DesignAdvice advice = advice_before(s.structure, s.desired, {});
+  for (const std::string& text : advice.notes) a.tell(text);
+  for (const std::string& text : advice.warnings) a.tell(text);
 }
 
 void Design::activate(const Activation& a) {

@@ -20,6 +20,7 @@ class Design final : public Block {
   static void describe(Describe& d);
   void configure(const Parameters& p) override;
   void resolve(Facts& f) override;
+  void advise(const Facts& f, Advice& a) override;
   void activate(const Activation& a) override;
   void process(Io& io) override;
   void receive(int port, const RecordView& record, Io& io) override;

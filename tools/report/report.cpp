@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <span>
@@ -63,6 +64,9 @@ bool add_by_type(Page& page, const Record& record, std::span<const Response> res
   return false;
 }
 
+/// Whether a record begins with what it found, in a sentence: what warns about it follows that.
+bool says_first(const Record& record) { return record.type == "trace" && !record.text("verdict").empty(); }
+
 /// The records' places: those that the graph wants shown first, in its order, then the others as they came.
 std::vector<std::size_t> order_of(const RunData& run) {
   std::vector<std::size_t> order;
@@ -100,7 +104,7 @@ void add_records(Page& page, const RunData& run) {
     const Record& record = run.records[n];
     page.open_section(record.key, kind_of(record.type));
     for (const auto& warning : record.texts("warnings"))
-      if (told.insert(warning).second) page.note(warning);
+      if (told.insert(warning).second && !says_first(record)) page.note(warning);
     if (!add_by_type(page, record, {responses.data(), known_to(run, n, before)})) add_any(page, record);
     page.close_section();
   }
@@ -131,9 +135,14 @@ tl::expected<WrittenReport, std::string> write_report(const ReportOptions& optio
   auto run = read_run(options.directory);
   if (!run) return tl::unexpected(run.error());
   Page page;
-  const auto warnings = warnings_of(*run);
-  add_warnings(page, warnings);
+  auto warnings = warnings_of(*run);
+  const bool finding_first = !run->records.empty() && says_first(run->records[order_of(*run).front()]);
+  // What spoils the run stands above all.
+  const auto behind = std::stable_partition(warnings.begin(), warnings.end(),
+                                            [&](const Warning& warning) { return warning.bad || !finding_first; });
+  add_warnings(page, {warnings.begin(), behind});
   add_records(page, *run);
+  add_warnings(page, {behind, warnings.end()});
   add_streams(page, *run, options.progress);
   add_what_was_done(page, *run, registry);
   add_provenance(page, *run);

@@ -140,6 +140,92 @@ const Array* axis_of(const Record& record, const char* name) {
   return axis == nullptr || axis->is_complex() || axis->shape.size() != 1 || axis->size() < 2 ? nullptr : axis;
 }
 
+/// Values of a residual over an axis as marks joined by a line; with `std` a band of twice as much on both sides.
+Series viewed(const std::vector<double>& at, const std::vector<double>& values, const std::vector<double>& std, const char* name,
+              int colour) {
+  Series series;
+  series.name = name;
+  series.colour = colour;
+  series.markers = true;
+  series.solid = true;
+  for (std::size_t n = 0; n < at.size(); ++n) {
+    if (!std::isfinite(at[n])) continue;
+    series.x.push_back(at[n]);
+    series.y.push_back(values[n]);
+    if (std.empty()) continue;
+    series.low.push_back(values[n] - 2.0 * std[n]);
+    series.high.push_back(values[n] + 2.0 * std[n]);
+  }
+  return series;
+}
+
+std::vector<double> row_of(const Array& a, std::size_t row) {
+  const auto columns = static_cast<std::ptrdiff_t>(a.shape[1]), begin = static_cast<std::ptrdiff_t>(row) * columns;
+  return {a.re.begin() + begin, a.re.begin() + begin + columns};
+}
+
+Chart view_chart(const Record& record, const std::string& name, const std::string& title, const std::string& x_title) {
+  Chart chart;
+  chart.name = record.key + name;
+  chart.title = title;
+  chart.description = title + ", before and after.";
+  chart.x_title = x_title;
+  return chart;
+}
+
+/// The mean of the residual over each signal.
+void add_maps(Page& page, const Record& record) {
+  const Array* const at = record.array("map_at");
+  const auto signals = record.texts("map_signals");
+  if (at == nullptr || at->is_complex() || at->shape.size() != 2 || at->shape[0] != signals.size()) return;
+  const Array *before = record.array("map_before", at->shape), *before_std = record.array("map_before_std", at->shape),
+              *after = record.array("map_after", at->shape), *after_std = record.array("map_after_std", at->shape);
+  if (before == nullptr || before_std == nullptr || after == nullptr || after_std == nullptr) return;
+  const bool added = !record.texts("effects").empty();
+  std::vector<Chart> charts;
+  for (std::size_t n = 0; n < signals.size(); ++n) {
+    Chart chart = view_chart(record, fmt::format("_map_{}", n + 1), "Mean of the residual over the " + signals[n],
+                             with_unit(signals[n], record.text_at("map_units", n, "")));
+    chart.x_title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(chart.x_title.front())));
+    Panel panel = panel_of(with_unit("Mean", before->unit), Scale::linear);
+    const std::vector<double> x = row_of(*at, n);
+    panel.series.push_back(viewed(x, row_of(*before, n), row_of(*before_std, n), added ? "before" : "", 1));
+    if (added) panel.series.push_back(viewed(x, row_of(*after, n), row_of(*after_std, n), "after", 0));
+    chart.panels.push_back(std::move(panel));
+    charts.push_back(std::move(chart));
+  }
+  page.grid(charts,
+            "Where the residual of the test record stands, over what happens in the plant; bands: two standard errors on both "
+            "sides. A right model leaves nothing but zero. A step at zero velocity is friction, a bend at large values a "
+            "saturation, a straight slope something linear; what the plant filters is smeared. The output, its slope, flows and "
+            "stored quantities are those of the model.");
+}
+
+Chart course_chart(const Record& record, const Array& at, const Array& before, const Array& after) {
+  const bool periods = record.text("course_axis") == "period", added = !record.texts("effects").empty();
+  Chart chart = view_chart(record, "_course", periods ? "Residual from period to period" : "Residual from block to block",
+                           periods ? "Period" : "Time [s]");
+  Panel panel = panel_of(with_unit("Root mean square", before.unit), Scale::linear);
+  panel.series.push_back(viewed(at.re, before.re, {}, added ? "before" : "", 1));
+  if (added) panel.series.push_back(viewed(at.re, after.re, {}, "after", 0));
+  if (const double noise = record.number("course_noise"); std::isfinite(noise)) panel.levels.push_back({noise, "noise"});
+  chart.panels.push_back(std::move(panel));
+  return chart;
+}
+
+Chart correlation_chart(const Record& record, const Array& lag, const Array& before, const Array& after) {
+  const bool added = !record.texts("effects").empty();
+  Chart chart = view_chart(record, "_autocorrelation", "Autocorrelation of the residual", "Lag [s]");
+  Panel panel = panel_of("Correlation", Scale::linear);
+  panel.range = Extent{-1.0, 1.0};
+  panel.series.push_back(viewed(lag.re, before.re, {}, added ? "before" : "", 1));
+  if (added) panel.series.push_back(viewed(lag.re, after.re, {}, "after", 0));
+  if (const double band = record.number("autocorrelation_band"); std::isfinite(band))
+    panel.levels = {{band, "95 %"}, {-band, ""}};
+  chart.panels.push_back(std::move(panel));
+  return chart;
+}
+
 }  // namespace
 
 Picture draw_bars(const std::string& title, const std::vector<Bar>& bars, const std::string& unit, double width) {
@@ -173,6 +259,25 @@ void add_trace_residual(Page& page, const Record& record) {
   } else if (const Array* const time = axis_of(record, "time"); time != nullptr) {
     add_over_time(page, record, *time);
   }
+}
+
+void add_trace_views(Page& page, const Record& record) {
+  add_maps(page, record);
+  std::vector<Chart> charts;
+  if (const Array* const at = axis_of(record, "course_at"); at != nullptr) {
+    const Array *before = record.array("course_before", at->shape), *after = record.array("course_after", at->shape);
+    if (before != nullptr && after != nullptr) charts.push_back(course_chart(record, *at, *before, *after));
+  }
+  if (const Array* const lag = axis_of(record, "autocorrelation_lag"); lag != nullptr) {
+    const Array *before = record.array("autocorrelation_before", lag->shape),
+                *after = record.array("autocorrelation_after", lag->shape);
+    if (before != nullptr && after != nullptr) charts.push_back(correlation_chart(record, *lag, *before, *after));
+  }
+  if (charts.empty()) return;
+  page.grid(charts,
+            "A residual that grows from one end of the test record to the other shows a drift, one that jumps a change of the "
+            "plant. One lag in twenty of white noise lies outside of the band" +
+                std::string(record.text("course_axis") == "period" ? "; the noise's own spectrum is taken out before." : "."));
 }
 
 void add_remedied_residual(Page& page, const Record& record) {

@@ -20,7 +20,11 @@ Picture draw_bars(const std::string& title, const std::vector<Bar>& bars, const 
 /// What a model leaves on the test record: by class of lines over frequency, or over time, before and after.
 void add_trace_residual(Page& page, const Record& record);
 
-/// The same beside what is left with the remedy, all lines together.
+/// What else shows in that residual, before and after: its mean where signals have such values, its course, its correlation with
+/// itself.
+void add_trace_views(Page& page, const Record& record);
+
+/// The residual beside what is left with the remedy, all lines together.
 void add_remedied_residual(Page& page, const Record& record);
 
 }  // namespace bodeflow::tools::report

@@ -25,6 +25,16 @@ const std::vector<std::string> kShown{"verdict",
                                       "error_remedied",
                                       "noise_floor",
                                       "noise_floor_99.9",
+                                      "noise_floor_0.01",
+                                      "course_axis",
+                                      "course_noise",
+                                      "autocorrelation_band",
+                                      "map_signals",
+                                      "map_units",
+                                      "floor_known",
+                                      "periods",
+                                      "input_name",
+                                      "output_name",
                                       "excess_before",
                                       "excess_after",
                                       "warnings",
@@ -137,42 +147,115 @@ void add_parameters(Page& page, const Record& record) {
   add_table(page.body(), table);
 }
 
+/// What a class test says of a record: multiples of the noise and their p, before and after.
+struct ClassRow {
+  std::string record;
+  const Array *before, *after, *p_before, *p_after;
+  std::size_t begin;  ///< in the arrays
+};
+
+/// The records that were fitted and that selects, then the test record.
+std::vector<ClassRow> class_rows(const Record& record, std::size_t classes) {
+  const auto records = record.texts("class_records");
+  std::vector<ClassRow> rows;
+  const auto add = [&](const std::string& name, const char* prefix, const std::vector<std::uint64_t>& shape, std::size_t begin) {
+    const std::string of = prefix;
+    const ClassRow row{name,
+                       record.array(of + "class_before", shape),
+                       record.array(of + "class_after", shape),
+                       record.array(of + "class_p_before", shape),
+                       record.array(of + "class_p_after", shape),
+                       begin};
+    if (row.before != nullptr && row.after != nullptr && row.p_before != nullptr && row.p_after != nullptr) rows.push_back(row);
+  };
+  for (std::size_t r = 0; r < records.size(); ++r) add(records[r], "", {records.size(), classes}, r * classes);
+  if (!rows.empty()) add("test", "test_", {classes}, 0);
+  return rows;
+}
+
 void add_classes(Page& page, const Record& record) {
-  const auto names = record.texts("class_names"), records = record.texts("class_records");
-  const std::vector<std::uint64_t> shape{records.size(), names.size()};
-  const Array *before = record.array("class_before", shape), *after = record.array("class_after", shape),
-              *p_before = record.array("class_p_before", shape), *p_after = record.array("class_p_after", shape);
-  if (names.empty() || before == nullptr || after == nullptr || p_before == nullptr || p_after == nullptr) return;
+  const auto names = record.texts("class_names");
+  const std::vector<ClassRow> rows = class_rows(record, names.size());
+  if (names.empty() || rows.empty()) return;
   const double limit = record.number("class_p_limit");
-  const bool added = !record.texts("effects").empty();
-  Table table{"What is left, by class of lines", {{"Record", false}}, {}};
+  const bool added = !record.texts("effects").empty(), known = std::isfinite(record.number("noise_floor"));
+  Table table{
+      known ? "What is left, by class of lines, in multiples of the noise" : "What is left, by test", {{"Record", false}}, {}};
   if (added) table.columns.push_back({"Model", false});
   for (const auto& name : names) table.columns.push_back({name});
-  for (std::size_t r = 0; r < records.size(); ++r) {
+  for (const ClassRow& of : rows) {
     for (const bool late : added ? std::vector{false, true} : std::vector{false}) {
-      std::vector<std::string> row{late ? "" : records[r]};
+      std::vector<std::string> row{late ? "" : of.record};
       if (added) row.push_back(late ? "after" : "before");
       for (std::size_t c = 0; c < names.size(); ++c) {
-        const std::size_t at = r * names.size() + c;
-        const bool found = (late ? p_after : p_before)->re[at] < limit;
-        row.push_back(shown((late ? after : before)->re[at], 3) + (found ? " *" : ""));
+        const bool found = (late ? of.p_after : of.p_before)->re[of.begin + c] < limit;
+        row.push_back(shown((late ? of.after : of.before)->re[of.begin + c], 3) + (found ? " *" : ""));
       }
       table.rows.push_back(std::move(row));
     }
   }
   add_table(page.body(), table);
-  if (!std::isfinite(record.number("noise_floor"))) {
+  if (!known) {
     page.paragraph(
         fmt::format("The noise is not known: * is a residual that does not look like noise (p below {}).", shown(limit, 2)));
     return;
   }
   page.paragraph(
       fmt::format("Root mean square of the residual in multiples of the noise; * is more than noise leaves (p below {}). Excited "
-                  "lines show what is "
-                  "linear and not in the model, odd and even unexcited lines odd and even nonlinearity, dc an offset, skirts "
-                  "(beside the excited "
-                  "lines) a drift, the peak between the lines a tone.",
+                  "lines show what is linear and not in the model, odd and even unexcited lines odd and even nonlinearity, dc an "
+                  "offset, skirts (beside the excited lines) a drift, the peak between the lines a tone.",
                   shown(limit, 2)));
+}
+
+/// The same in the unit of the output.
+void add_class_sizes(Page& page, const Record& record) {
+  const auto names = record.texts("class_names"), records = record.texts("records");
+  const std::vector<std::uint64_t> shape{records.size(), names.size()};
+  const Array *before = record.array("class_rms_before", shape), *after = record.array("class_rms_after", shape),
+              *noise = record.array("class_rms_noise", shape);
+  if (names.empty() || before == nullptr || after == nullptr || noise == nullptr) return;
+  const bool added = !record.texts("effects").empty();
+  Table table{with_unit("What is left, by class of lines", before->unit), {{"Record", false}, {"", false}}, {}};
+  for (const auto& name : names) table.columns.push_back({name});
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const auto add = [&](const std::string& record_name, const char* what, const Array& values) {
+      std::vector<std::string> row{record_name, what};
+      for (std::size_t c = 0; c < names.size(); ++c) row.push_back(shown(values.re[r * names.size() + c], 3));
+      table.rows.push_back(std::move(row));
+    };
+    add(records[r], added ? "before" : "residual", *before);
+    if (added) add("", "after", *after);
+    add("", "noise", *noise);
+  }
+  add_table(page.body(), table);
+  page.paragraph("Root mean square of all lines of a class together; of the peak that of the highest line.");
+}
+
+/// What each record was used for.
+std::string use_of(const std::string& record) {
+  return record.rfind("fit", 0) == 0 ? "fitted" : record == "select" ? "ranks the candidates" : "the errors told here";
+}
+
+/// The error of every record, also of those that were fitted.
+void add_record_errors(Page& page, const Record& record) {
+  const auto records = record.texts("records");
+  const std::vector<std::uint64_t> shape{records.size()};
+  const Array *before = record.array("record_error_before", shape), *after = record.array("record_error_after", shape),
+              *noise = record.array("record_noise", shape);
+  if (records.empty() || before == nullptr || after == nullptr || noise == nullptr) return;
+  const bool added = !record.texts("effects").empty(), known = std::isfinite(noise->re.front());
+  Table table{with_unit("Error by record", before->unit), {{"Record", false}, {added ? "Before" : "Error"}}, {}};
+  if (added) table.columns.push_back({"After"});
+  if (known) table.columns.insert(table.columns.end(), {{"Noise alone"}, {added ? "Before / noise" : "Error / noise"}});
+  if (known && added) table.columns.push_back({"After / noise"});
+  for (std::size_t n = 0; n < records.size(); ++n) {
+    std::vector<std::string> row{records[n], shown(before->re[n])};
+    if (added) row.push_back(shown(after->re[n]));
+    if (known) row.insert(row.end(), {shown(noise->re[n]), shown(before->re[n] / noise->re[n], 3)});
+    if (known && added) row.push_back(shown(after->re[n] / noise->re[n], 3));
+    table.rows.push_back(std::move(row));
+  }
+  add_table(page.body(), table);
 }
 
 void add_candidates(Page& page, const Record& record) {
@@ -234,13 +317,27 @@ void add_error_table(Page& page, const Record& record) {
   page.paragraph("Root mean squares. What is not noise is the root of the difference of the squares of error and noise.");
 }
 
-/// What can't be told from what was named, and what would tell it; what the experiment could not say.
+/// Where noise alone puts the error, beside where it is.
+void add_band(Page& page, const Record& record) {
+  const double low = record.number("noise_floor_0.01"), high = record.number("noise_floor_99.9"),
+               error = record.number(record.texts("effects").empty() ? "error_before" : "error_after");
+  if (!std::isfinite(low) || !std::isfinite(high) || !std::isfinite(error)) return;
+  const std::string unit = record.text("unit");
+  page.paragraph("Noise alone puts the error on the test record between " + shown(low, unit) + " and " + shown(high, unit) +
+                 " (it is higher once in 1,000 records and lower once in 10,000); it is " + shown(error, unit) + ", " +
+                 (error > high  ? "above that band."
+                  : error < low ? "below that band."
+                                : "within that band."));
+}
+
+/// What can't be told from what was named, and what would tell it; warnings; what the experiment could not say.
 void add_equivalents(Page& page, const Record& record) {
   const auto effects = record.texts("effects"), others = record.texts("effect_equivalents");
   for (std::size_t e = 0; e < effects.size() && e < others.size(); ++e)
     if (!others[e].empty()) page.note(effects[e] + " can't be told from " + others[e] + " with these data.");
-  for (const char* list : {"advice", "remarks"})
+  for (const char* list : {"warnings", "advice"})
     for (const std::string& text : record.texts(list)) page.note(text);
+  for (const std::string& text : record.texts("remarks")) page.paragraph("On the test record: " + text + ".");
 }
 
 void add_not_tried(Page& page, const Record& record) {
@@ -253,26 +350,33 @@ void add_not_tried(Page& page, const Record& record) {
   close_details(page.body());
 }
 
-/// What each record was used for, with what identifies it.
+/// What a trace is made of: records with what identifies them, and how they were prepared.
 void add_records(Page& page, const Record& record) {
   const auto names = record.texts("records");
+  if (names.empty()) return;
   const std::vector<std::uint64_t> shape{names.size()};
   const Array* levels = record.array("record_levels", shape);
-  if (names.empty()) return;
+  const auto samples = record.attributes.find("record_samples");
+  const double periods = record.number("periods");
   Table table{"Records",
               {{"Record", false},
                {"Used for", false},
+               {"Samples"},
                {with_unit("Input, rms", levels == nullptr ? "" : levels->unit)},
                {"Checksum", false}},
               {}};
   for (std::size_t n = 0; n < names.size(); ++n) {
-    const std::string use = names[n].rfind("fit", 0) == 0 ? "fitted"
-                            : names[n] == "select"        ? "ranks the candidates"
-                                                          : "the errors told here";
-    table.rows.push_back({names[n], use, levels == nullptr || levels->re[n] == 0.0 ? "–" : shown(levels->re[n]),
+    const bool told =
+        samples != record.attributes.end() && samples->is_array() && n < samples->size() && (*samples)[n].is_number_unsigned();
+    table.rows.push_back({names[n], use_of(names[n]), told ? counted((*samples)[n].get<std::uint64_t>()) : "–",
+                          levels == nullptr || levels->re[n] == 0.0 ? "–" : shown(levels->re[n]),
                           record.text_at("record_checksums", n, "–").substr(0, 16)});
   }
   add_table(page.body(), table);
+  if (periods > 0.0) page.paragraph("Periods that are averaged: " + shown(periods) + ".");
+  page.paragraph(
+      "All chances are drawn from fixed seeds: the same records give the same bits. Version, files and the seed of the "
+      "run stand under Provenance.");
   for (const char* list : {"record_notes", "observations"})
     for (const std::string& text : record.texts(list)) page.paragraph(text);
 }
@@ -280,6 +384,7 @@ void add_records(Page& page, const Record& record) {
 /// A trace whose effects were remedied: what was switched on, the three errors, the residual.
 bool add_remedied(Page& page, const Record& record) {
   page.body().open("p").element("b", record.text("remedy") + " " + record.text("sentence_remedied")).close("p");
+  for (const std::string& warning : record.texts("warnings")) page.note(warning);
   add_error_table(page, record);
   add_remedied_residual(page, record);
   return true;
@@ -292,13 +397,17 @@ bool add_trace(Page& page, const Record& record) {
   if (verdict.empty()) return false;
   if (!record.text("remedy").empty()) return add_remedied(page, record);
   page.body().open("p").element("b", finding.empty() ? verdict_text(verdict) : finding).close("p");
+  add_band(page, record);
   add_equivalents(page, record);
-  add_errors(page, record);
   add_error_table(page, record);
   add_effects(page, record);
   add_parameters(page, record);
+  add_record_errors(page, record);
   add_classes(page, record);
+  add_class_sizes(page, record);
+  add_errors(page, record);
   add_trace_residual(page, record);
+  add_trace_views(page, record);
   add_candidates(page, record);
   add_not_tried(page, record);
   add_records(page, record);

@@ -63,6 +63,43 @@ ordered_json trace() {
   return record;
 }
 
+/// With what newer traces hold: errors and classes of all records, views of the residual of the test record.
+ordered_json whole_trace() {
+  ordered_json record = trace();
+  ordered_json& a = record["attributes"];
+  a["noise_floor_0.01"] = 0.0262;
+  a["records"] = {"fit 1", "select", "test"};
+  a["record_samples"] = {12288, 12288, 4096};
+  a["periods"] = 6;
+  a["map_signals"] = {"input", "flow at winding"};
+  a["map_units"] = {"V", "A"};
+  a["course_axis"] = "period";
+  a["course_noise"] = 0.07;
+  a["autocorrelation_band"] = 0.05;
+  ordered_json& r = record["arrays"];
+  r["record_error_before"] = array_of("A", {3}, {0.31, 0.27, 0.28});
+  r["record_error_after"] = array_of("A", {3}, {0.0287, 0.0301, 0.03});
+  r["record_noise"] = array_of("A", {3}, {0.0286, 0.0287, 0.0288});
+  r["class_rms_before"] = array_of("A", {3, 2}, {0.301, 0.051, 0.26, 0.03, 0.27, 0.04});
+  r["class_rms_after"] = array_of("A", {3, 2}, {0.021, 0.011, 0.022, 0.012, 0.023, 0.013});
+  r["class_rms_noise"] = array_of("A", {3, 2}, {0.0205, 0.0105, 0.0205, 0.0105, 0.0205, 0.0105});
+  for (const char* name : {"test_class_before", "test_class_after"}) r[name] = array_of("1", {2}, {33.3, 3.31});
+  r["test_class_p_before"] = array_of("1", {2}, {0, 0.3});
+  r["test_class_p_after"] = array_of("1", {2}, {0.5, 0.3});
+  r["map_at"] = array_of("", {2, 4}, {-2, -1, 1, 2, -0.5, 0, 0.5, 0.7});
+  r["map_before"] = array_of("A", {2, 4}, {-0.2, -0.2, 0.2, 0.2, -0.1, 0, 0.1, 0.1});
+  r["map_after"] = array_of("A", {2, 4}, {0.01, -0.01, 0.01, 0, 0, 0, 0.01, 0.01});
+  for (const char* name : {"map_before_std", "map_after_std"})
+    r[name] = array_of("A", {2, 4}, {0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01});
+  r["course_at"] = array_of("", {3}, {1, 2, 3});
+  r["course_before"] = array_of("A", {3}, {0.29, 0.3, 0.29});
+  r["course_after"] = array_of("A", {3}, {0.07, 0.071, 0.069});
+  r["autocorrelation_lag"] = array_of("s", {4}, {0.001, 0.002, 0.003, 0.004});
+  r["autocorrelation_before"] = array_of("1", {4}, {0.9, 0.7, 0.4, 0.1});
+  r["autocorrelation_after"] = array_of("1", {4}, {0.01, -0.02, 0.03, 0.01});
+  return record;
+}
+
 ordered_json reveal() {
   return {{"type", "reveal"},
           {"attributes",
@@ -96,6 +133,59 @@ TEST_CASE("report: a trace says first what is missing, then shows errors, parame
                            "Residual on the test record", "Declared: the input is the command."})
     CHECK_THAT(page, Contains(text));
   CHECK_THAT(page, !Contains("1.01 *"));
+}
+
+TEST_CASE("report: a trace tells errors and classes of every record in units and multiples, and draws what the residual shows") {
+  const std::string page = page_of({{"trace", whole_trace()}});
+  for (const char* text :
+       {"Noise alone puts the error on the test record between 0.0262 A and 0.0305 A", "it is 0.03 A, within that band.",
+        "Error by record [A]", "After / noise", "0.0301", "in multiples of the noise", "33.3 *", ">3.31<",
+        "What is left, by class of lines [A]", ">noise<", "0.0205", "Mean of the residual over the input", "Flow at winding [A]",
+        "Residual from period to period", "Autocorrelation of the residual", ">95 %<", "12,288", "Periods that are averaged: 6."})
+    CHECK_THAT(page, Contains(text));
+  CHECK_THAT(page, !Contains("3.31 *"));
+}
+
+TEST_CASE("report: of a trace come words, then tables, then drawings, then candidates, and warnings behind the finding") {
+  ordered_json record = whole_trace();
+  record["attributes"]["warnings"] = {"the fit did not converge"};
+  const std::string page = page_of({{"trace", record}});
+  std::size_t last = 0;
+  for (const char* text : {"<b>Missing effect: dead time", "Noise alone puts", "<p class=\"note\">the fit did not converge",
+                           "Error on data not used for fitting", "Added: dead_time", "Parameters of the model", "Error by record",
+                           "in multiples of the noise", "by class of lines [A]", "Error of the model",
+                           "Residual on the test record", "Mean of the residual over the input", "Residual from period to period",
+                           "Candidates, best first", "<caption>Records</caption>", "<ul class=\"warnings\">"}) {
+    INFO(text);
+    const auto at = page.find(text, last);
+    REQUIRE(at != std::string::npos);
+    last = at;
+  }
+}
+
+TEST_CASE("report: a trace that found nothing says where noise alone puts its error, and draws one curve each") {
+  ordered_json record = whole_trace();
+  ordered_json& a = record["attributes"];
+  a["verdict"] = "none";
+  a["finding"] = "Nothing is missing: what the model leaves is noise.";
+  a["effects"] = ordered_json::array();
+  a["error_before"] = a["error_after"] = 0.0291;
+  const std::string page = page_of({{"trace", record}});
+  for (const char* text :
+       {"Nothing is missing", "it is 0.0291 A, within that band.", "Error / noise", "Mean of the residual over"})
+    CHECK_THAT(page, Contains(text));
+  for (const char* absent : {">before<", ">after<", "After / noise"}) CHECK_THAT(page, !Contains(absent));
+}
+
+TEST_CASE("report: views of a trace that do not fit each other are left out") {
+  ordered_json record = whole_trace();
+  record["arrays"]["map_before"] = array_of("A", {2, 3}, {1, 2, 3, 4, 5, 6});
+  record["arrays"]["course_after"] = array_of("A", {2}, {1, 2});
+  record["arrays"]["record_noise"] = array_of("A", {1}, {1});
+  const std::string page = page_of({{"trace", record}});
+  CHECK_THAT(page, Contains("Autocorrelation of the residual"));
+  for (const char* absent : {"Mean of the residual over", "Residual from period to period", "Error by record"})
+    CHECK_THAT(page, !Contains(absent));
 }
 
 TEST_CASE("report: a trace that added nothing tells parameters and classes once") {

@@ -55,6 +55,19 @@ Probe probe(const std::string& block, Registry& registry) {
   return probe;
 }
 
+/// Of samples; a missing rate is refused in words of the command line.
+Probe probe_samples(const DataOptions& options, Registry& registry) {
+  Probe found = probe(data_block(options, DataKind::time_series), registry);
+  if (found.refusal.empty() || !options.rate.empty()) return found;
+  DataOptions with_rate = options;
+  with_rate.rate = "1 Hz";
+  if (probe(data_block(with_rate, DataKind::time_series), registry).refusal.empty())
+    found.refusal = options.file +
+                    ": no sampling rate and no time column (`t` or `time` with a unit of time, such as `t [s]`); give the "
+                    "samples per second: --rate 2500Hz";
+  return found;
+}
+
 }  // namespace
 
 std::string yaml_text(const std::string& text) {
@@ -80,7 +93,7 @@ std::string data_block(const DataOptions& options, DataKind kind) {
 }
 
 tl::expected<double, std::string> duration_of(const DataOptions& options, Registry& registry) {
-  const Probe found = probe(data_block(options, DataKind::time_series), registry);
+  const Probe found = probe_samples(options, registry);
   if (!found.refusal.empty()) return tl::unexpected(found.refusal);
   return found.duration_s;
 }
@@ -105,7 +118,7 @@ tl::expected<DataKind, std::string> data_kind(const DataOptions& options, Regist
   }
   if (!options.inputs.empty() && !options.outputs.empty()) return DataKind::time_series;
   const DataOptions all{options.file, {}, {}, options.rate};
-  const Probe samples = probe(data_block(all, DataKind::time_series), registry);
+  const Probe samples = probe_samples(all, registry);
   if (samples.refusal.empty())
     return tl::unexpected(fmt::format("{} is missing: which column is the {}? {}",
                                       options.inputs.empty() ? "--input" : "--output",

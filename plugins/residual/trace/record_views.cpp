@@ -10,7 +10,7 @@ namespace bodeflow::residual {
 namespace {
 
 // Signals that are so much alike show the same.
-constexpr double kAlike = 0.9999;
+constexpr double kAlike = 0.995;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// A record with what the base model leaves of it, and the model that is told.

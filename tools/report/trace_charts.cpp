@@ -216,7 +216,7 @@ Chart course_chart(const Record& record, const Array& at, const Array& before, c
 Chart correlation_chart(const Record& record, const Array& lag, const Array& before, const Array& after) {
   const bool added = !record.texts("effects").empty();
   Chart chart = view_chart(record, "_autocorrelation", "Autocorrelation of the residual", "Lag [s]");
-  Panel panel = panel_of("Correlation", Scale::linear);
+  Panel panel = panel_of("Correlation", Scale::exact);
   panel.range = Extent{-1.0, 1.0};
   panel.series.push_back(viewed(lag.re, before.re, {}, added ? "before" : "", 1));
   if (added) panel.series.push_back(viewed(lag.re, after.re, {}, "after", 0));

@@ -183,6 +183,10 @@ TEST_CASE("trace refuses what it is not told rightly, with what there is") {
   CHECK(holds(refusal(folder, words(base("second_order"), {"--known", "fit 2: added_mass=1 g"}), 2), "no record 'fit 2'"));
   CHECK(holds(refusal(folder, words(base("second_order"), {"--known", "added_mass"}), 2), "expected 'RECORD: NAME=VALUE'"));
   CHECK(holds(refusal(folder, {"trace", "--model", "second_order", "--fit", "nowhere.csv"}, 3), "nowhere.csv: no such file"));
+  folder.write("without_rate.csv", "force,position\n1,0.1\n2,0.3\n1,0.2\n0,0.1\n");
+  CHECK(holds(refusal(folder, words({"trace", "--model", "second_order", "--fit", "without_rate.csv"}, kColumns), 3),
+              "without_rate.csv: no sampling rate and no time column (`t` or `time` with a unit of time, such as `t [s]`); give "
+              "the samples per second: --rate 2500Hz"));
   CHECK(holds(refusal(folder, words({"trace", "--model", "second_order"}, fit), 3),
               "--input is missing: which column is the input?"));
   CHECK(holds(refusal(folder, {"trace", "--model", "impedance", "--fit", "response.csv", "--period", "5"}, 2),

@@ -11,6 +11,7 @@
 #include "periodic/open_loop.hpp"
 #include "periodic/periodic_prediction.hpp"
 #include "periodic/periodic_views.hpp"
+#include "periodic/tone_free.hpp"
 #include "periodic/tones.hpp"
 #include "sampled/observations.hpp"
 #include "sampled/record_input.hpp"
@@ -127,7 +128,7 @@ class PeriodicMeasurement final : public Measurement {
     h.error = std::sqrt(square);
     h.floor = std::sqrt(mean);
     h.highest = h.floor * std::sqrt(f_limit(kHighest, d1, d2));
-    h.lowest = h.floor * std::sqrt(f_limit(1.0 - kLeak, d1, d2));
+    h.lowest = h.floor * std::sqrt(f_limit(1.0 - kLeak, d1, d2) * part_left_between(left));
     return h;
   }
 
@@ -192,6 +193,17 @@ class PeriodicMeasurement final : public Measurement {
   }
 
  private:
+  /// What a model leaves between the lines, over the floor there, 1 at most: less than 1 where it explains a drift that had
+  /// raised the floor.
+  double part_left_between(const Eigen::VectorXcd& left) const {
+    std::vector<double> hz;
+    for (Eigen::Index l = 1; l < r_.bins(); ++l)
+      if (!r_.is_line(l)) hz.push_back(r_.frequency_hz[l]);
+    const Eigen::Map<const Eigen::VectorXd> at(hz.data(), static_cast<Eigen::Index>(hz.size()));
+    const auto floor = FloorOfBins::make(at, tone_free_power(left, r_.periods, r_.period * r_.periods));
+    return floor ? std::min(floor->at(at).sum() / r_.floor.at(at).sum(), 1.0) : 1.0;
+  }
+
   bool counts(Eigen::Index bin) const { return all_bins_ || r_.is_line(bin); }
 
   PeriodicRecord r_;

@@ -36,7 +36,6 @@ Expected<GivenRecords> with_all_parts(GivenRecords records, Engine engine);
 /// statement that is wrong. Segments: of records over time, see SampledOptions; the test record has its own. Errors: those of the
 /// measurements, with the record's name; a recording whose units, where they are given, are not those of the base model.
 Expected<TraceData> measurements_of(const GivenRecords& records, Engine engine, const BaseModel& base,
-                                    const std::vector<std::string>& known, double segment_s = 0.0,
-                                    double test_segment_s = 0.0);
+                                    const std::vector<std::string>& known, double segment_s = 0.0, double test_segment_s = 0.0);
 
 }  // namespace bodeflow::residual

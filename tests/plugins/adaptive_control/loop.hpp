@@ -159,7 +159,7 @@ struct Conditions {
   double limit = 1e300;                ///< of |u|
   std::function<double(int)> gain;     ///< of the plant, 1 where empty
   std::function<double(int)> command;  ///< in place of the example's sequence
-  bool watched = true;  ///< by the designer
+  bool watched = true;                 ///< by the designer
   bool known_plant = false;            ///< a controller designed with the true response from the start sample on
 };
 

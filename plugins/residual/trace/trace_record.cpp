@@ -47,7 +47,7 @@ void put_verdict(RecordBuilder& r, const Trace& t, const std::string& unit) {
   r.set("unit", unit).set("floor_known", t.floor_known).set("p", t.p);
   r.set("error_before", t.before.error).set("error_after", t.after.error).set("error_remedied", kNone);
   r.set("noise_floor", t.before.floor).set("noise_floor_99.9", t.floor_known ? t.before.highest : kNone);
-  r.set("noise_floor_0.01", t.floor_known ? t.before.lowest : kNone);
+  r.set("noise_floor_0.01", t.floor_known ? (t.added() ? t.after : t.before).lowest : kNone);
   r.set("excess_before", t.before.excess()).set("excess_after", t.after.excess());
   r.set("at_floor", t.floor_known && t.after.at_floor()).set("leak", t.after.leak());
   r.set("share_explained", t.added() ? t.searched.share : 0.0);

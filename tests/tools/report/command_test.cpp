@@ -78,7 +78,7 @@ TEST_CASE("report: drawings of all record types are well-formed XML, and --json 
   REQUIRE(ended.exit_code == 0);
   const auto json = nlohmann::json::parse(ended.out);
   CHECK(json["report"] == "run/report.html");
-  CHECK(json["records"] == 17);
+  CHECK(json["records"] == 18);
   CHECK(json["warnings"].size() >= 2);
   std::vector<std::string> files;
   for (const auto& plot : json["plots"]) files.push_back((folder.path() / plot.get<std::string>()).string());

@@ -16,7 +16,7 @@ namespace {
 /// The measurement that a graph needs, as a path below the shared data; "" for a graph that stands alone.
 std::string data_of(const std::string& graph) {
   static const std::map<std::string, std::string> files{
-      {"bench_distortion.yaml", "motorbench_two_mass/multisine_B.csv"},
+      {"measuring/bench_distortion.yaml", "motorbench_two_mass/multisine_B.csv"},
       {"first_steps/measured_frequency_response.yaml", "motorbench_two_mass/multisine_A.csv"},
       {"measuring/fine_steering_mirror.yaml", "fine_steering_mirror/fsm_300mV_train.csv"},
       {"measuring/silverbox.yaml", "silverbox/SNLS80mV.csv"},

@@ -22,6 +22,19 @@ Method rational(const std::string& name, bodeflow::sanathanan_koerner::Method me
           }};
 }
 
+/// One start, and no more than two steps: what a single call of a peer does.
+Method two_steps(const std::string& name) {
+  return {name, [](const Data& data, Eigen::Index ports, Eigen::Index order) -> std::optional<Model> {
+            bodeflow::sanathanan_koerner::Settings settings;
+            settings.prewarp_rad_s = bodeflow::subspace::bandwidth_prewarp(data.omega_rad_s);
+            settings.initial_poles = bodeflow::sanathanan_koerner::Spacing::logarithmic;
+            settings.stop.iterations = 2;
+            auto found = bodeflow::sanathanan_koerner::fitted(data, settings, order, ports);
+            if (!found) return {};
+            return Model{std::move(found->system), std::move(found->poles)};
+          }};
+}
+
 Method subspace(const std::string& name, int polish) {
   return {name, [=](const Data& data, Eigen::Index ports, Eigen::Index order) -> std::optional<Model> {
             using namespace bodeflow::subspace;
@@ -42,6 +55,7 @@ std::vector<Method> methods() {
   using bodeflow::sanathanan_koerner::Method;
   return {rational("sanathanan_koerner", Method::arnoldi, false),
           rational("sanathanan_koerner, refined", Method::arnoldi, true),
+          two_steps("sanathanan_koerner, two steps"),
           rational("vector_fitting", Method::vector_fitting, false),
           rational("vector_fitting, refined", Method::vector_fitting, true),
           subspace("subspace", 5),

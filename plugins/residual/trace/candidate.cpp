@@ -227,6 +227,7 @@ void settle(const Against& against, Candidate& c) {
 }
 
 std::string weakness(const Levels& levels, const Candidate& c) {
+  if (!levels.support) return "";
   return hardly_supported(c.with.fit, c.with.fit.model.additions.size() - 1, c.null.amplitudes, levels.p_candidate());
 }
 
@@ -254,7 +255,7 @@ void judge(const Levels& levels, bool share_counts, bool floor_known, Candidate&
                short_number(100.0 * kLeastShare, 2) + " %";
   } else if (const std::string none = levels_alone(levels, c); !none.empty()) {
     c.reason = none;
-  } else if (const std::string weak = floor_known ? "" : weakness(levels, c); !weak.empty()) {
+  } else if (const std::string weak = weakness(levels, c); !weak.empty()) {
     c.reason = "hardly supported: " + weak;
   } else {
     c.accepted = true;

@@ -6,8 +6,9 @@ namespace bodeflow::residual {
 
 /// Levels that tests and candidates have to pass, all from the probability of a false alarm and the number of tries.
 struct Levels {
-  double alpha = 0.01;  ///< of a clean case, half for the classes and half for the candidates
-  double share = 0.97;  ///< of what is missing that a named cause explains
+  double alpha = 0.01;   ///< of a clean case, half for the classes and half for the candidates
+  double share = 0.97;   ///< of what is missing that a named cause explains
+  bool support = false;  ///< effects have to be supported by blocks of a record over time (see hardly_supported)
   std::size_t class_tests = 1;
   std::size_t candidates = 1;  ///< tried so far, over all steps
 

@@ -37,6 +37,7 @@ class Searcher {
     out_.levels.alpha = settings.alpha;
     out_.levels.share = settings.share;
     out_.levels.candidates = 0;
+    out_.levels.support = !floor_known_ && bench.select->facts().sample_rate_hz > 0.0;
   }
 
   Expected<Searched> run(const JointModel& base) {
@@ -67,7 +68,8 @@ class Searcher {
     Step step;
     const bool near = floor_known_ && !before.tests.empty() && before.smallest_p() > out_.levels.p_class();
     const Fit& base = out_.base.fit;
-    const double missing = floor_known_ ? std::max(base.chi2 - static_cast<double>(base.residual.size()), 0.0) : before.fit.chi2;
+    const double known = std::max(base.chi2 - static_cast<double>(base.residual.size()), 0.0);
+    const double missing = floor_known_ ? known : out_.levels.support ? before.fit.chi2 : 0.0;
     const Against against{bench_, before, out_.base.select.residual, base_starts_, near, near ? 0.0 : missing};
     const std::optional<Excerpt> excerpt = near ? std::nullopt : excerpt_of(bench_, before);
     std::vector<Bound> all = bind_all(catalogue, before.fit.model, values_of(before.fit), bench_.fit);
@@ -139,7 +141,7 @@ class Searcher {
       judge(step.levels, share_counts, floor_known_, all.front());
       rank(all);
     }
-    if (!floor_known_) settle_simpler(against, share_counts, step);
+    if (out_.levels.support) settle_simpler(against, share_counts, step);
   }
 
   /// Squares that it removes from the selecting record.
@@ -191,7 +193,7 @@ class Searcher {
       for (Candidate& c : all) {
         const double rival = c.approached ? near_rival : kRival;
         if (!c.tried || c.on_parts || c.with.fit.polished || c.p > kNearLevel * step.levels.p_candidate() ||
-            c.merit() < rival * best || !(floor_known_ || weakness(step.levels, c).empty()))
+            c.merit() < rival * best || !weakness(step.levels, c).empty())
           continue;
         if (next == nullptr || c.merit() > next->merit()) next = &c;
       }
@@ -229,7 +231,7 @@ class Searcher {
     if (!floor_known_) {
       for (std::size_t n = 1; n < all.size() && all[n].accepted; ++n) {
         if (!all[n].with.fit.polished || !(all[n].price < all.front().price)) continue;
-        if (!(removed(all[n]) > kAlike * removed(all.front()))) continue;
+        if (step.levels.support && !(removed(all[n]) > kAlike * removed(all.front()))) continue;
         if (!(distinction(bench_, all.front(), all[n]) < step.levels.z_candidate())) continue;
         std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n), all.begin() + static_cast<std::ptrdiff_t>(n) + 1);
       }
@@ -277,9 +279,10 @@ class Searcher {
     return std::move(*examined);
   }
 
-  /// Where no floor is known, what is found later may take the ground from under what was found before.
+  /// What is found later may take the ground from under what was found before.
   bool is_supported(std::size_t n) const {
-    return floor_known_ || hardly_supported(out_.best.fit, n, out_.found[n].amplitudes, out_.levels.p_candidate()).empty();
+    return !out_.levels.support ||
+           hardly_supported(out_.best.fit, n, out_.found[n].amplitudes, out_.levels.p_candidate()).empty();
   }
 
   /// Drops effects whose absence costs nothing on the selecting record.
@@ -349,7 +352,7 @@ class Searcher {
 
   /// Where no floor is known, blocks that differ much hide that one of them removes far less of the squares.
   bool explains_alike(const Candidate& best, const Candidate& c) const {
-    if (floor_known_) return true;
+    if (!out_.levels.support) return true;
     return removed(c) > kAlike * (c.select_gain.excess_before - best.with.select.residual.squaredNorm());
   }
 

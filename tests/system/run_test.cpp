@@ -101,7 +101,7 @@ TEST_CASE("Ctrl-C ends a run as partial, with what was recorded, and exit code 1
       "  tone: {block: generators.sine, sample_rate: 10 kHz, frequency: 100 Hz}\n  twice: {block: filters.gain, gain: 2}\n"
       "  table: {block: output.csv, file: tone.csv}\n"
       "connections:\n  - tone -> twice -> table\nrecord: [twice]\n");
-  const auto ended = run_program({"timeout", "--preserve-status", "-s", "INT", "1.5", BODEFLOW_BUILD_DIR "/bin/bodeflow", "run",
+  const auto ended = run_program({"timeout", "--preserve-status", "-s", "INT", "4", BODEFLOW_BUILD_DIR "/bin/bodeflow", "run",
                                   "endless.yaml", "--out", "out"},
                                  folder.path());
   CHECK(ended.exit_code == 130);

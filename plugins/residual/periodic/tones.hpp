@@ -6,8 +6,8 @@
 
 namespace bodeflow::residual {
 
-/// Sinusoids of the output that the input does not make, taken out of a residual: amplitude and phase of each are fitted to the
-/// bins between the lines, and what they leak into the lines is taken off too.
+/// Sinusoids of the output that the input does not make, taken out of a residual: amplitude and phase of each are fitted to all
+/// bins, those of the lines included.
 ///
 /// A tone on a line of the period shows at no bin between and is left: there it can't be told from what a nonlinearity makes.
 class Tones {

@@ -56,11 +56,11 @@ Eigen::MatrixXd scatter_of(const Fit& f, const Measurements& records, const Eige
 
 Fit final_fit(const Fit& fit, const Measurements& records) {
   Fit f = fit;
-  Measurements with = records;
-  const bool noisy_inputs = bends(fit.model) && likely(records, fit) != records;
+  Measurements with = bends(fit.model) ? likely(records, fit) : records;
+  const bool noisy_inputs = with != records;
   bool still = !noisy_inputs;
   for (int turn = 0; turn < kMostTurns && !still; ++turn) {
-    with = likely(records, f);
+    if (turn > 0) with = likely(records, f);
     FitProblem problem(f.model, with);
     problem.bound_base(f.at);
     auto polished = polish(problem, f.at);

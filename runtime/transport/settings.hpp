@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bodeflow::transport {
+
+/// Why a call of the transport did not do what it was asked.
+struct Failure {
+  enum class Kind {
+    stopped,    ///< the caller's GoOn said no
+    tolerance,  ///< nothing came or went for the edge's tolerance
+    peer,       ///< the other side has gone for good, or said why it ends
+    refused,    ///< what came does not belong to this edge: another stream, element, channels, rate
+    library     ///< Fast DDS refused
+  };
+  Kind kind = Kind::library;
+  std::string text;
+};
+
+/// Asked at least every 50 ms while a call waits. False: the call returns with Failure::Kind::stopped.
+using GoOn = std::function<bool()>;
+
+/// Files of DDS-Security for one participant, in PEM; see `bodeflow trust`.
+struct Security {
+  std::filesystem::path authority;    ///< certificate of the lab's authority: identities and permissions
+  std::filesystem::path certificate;  ///< of this participant
+  std::filesystem::path key;
+  std::filesystem::path governance;   ///< signed (smime)
+  std::filesystem::path permissions;  ///< signed (smime)
+};
+
+/// How a process takes part.
+struct Settings {
+  enum class Discovery { multicast, peers, server };
+  enum class Carrier { automatic, udp, tcp, shared_memory };  ///< automatic: shared memory on a host, UDP between hosts
+
+  std::string name = "bodeflow";  ///< of the participant, shown by others
+  std::uint32_t domain = 0;
+  Discovery discovery = Discovery::multicast;
+  std::vector<std::string> peers;  ///< `address` or `address:port`; with Discovery::server the servers
+  Carrier carrier = Carrier::automatic;
+  std::vector<std::string> interfaces;  ///< IP addresses of the interfaces to use; empty: all
+  std::uint32_t datagram = 1400;        ///< bytes in a UDP datagram, at most: larger ones do not live through loss
+  double lease_s = 30.0;                ///< a participant that is silent for this long has gone; beyond every edge's tolerance
+  std::optional<Security> security;
+};
+
+}  // namespace bodeflow::transport

@@ -32,6 +32,7 @@ struct Security {
   std::filesystem::path key;
   std::filesystem::path governance;   ///< signed (smime)
   std::filesystem::path permissions;  ///< signed (smime)
+  std::filesystem::path revocations;  ///< list of certificates that are no longer trusted, read once at the join; empty: none
 };
 
 /// How a process takes part.

@@ -42,6 +42,12 @@ inline constexpr std::uint64_t kMostPayload = std::uint64_t{64} << 20;
 /// The CDR bytes (little-endian, with encapsulation) of a message whose payload is `parts` one after the other.
 std::vector<std::byte> encode(const Header& header, std::span<const std::span<const std::byte>> parts);
 
+/// The bytes of `encode` that come before the payload.
+std::vector<std::byte> encode_head(const Header& header, std::uint64_t payload_bytes);
+
+/// Why a reader would refuse such a message; empty: it would not.
+std::string refusal(const Header& header, std::uint64_t payload_bytes);
+
 struct Decoded {
   Header header;
   std::span<const std::byte> payload;  ///< into the bytes

@@ -30,11 +30,14 @@ fs::path shared_data() {
   return given != nullptr ? fs::path(given) : fs::path(BODEFLOW_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
+/// A drive stands behind these; they are run with the simulated one beside it.
+bool needs_device(const fs::path& graph) { return graph.filename().string().rfind("modbus_", 0) == 0; }
+
 std::vector<fs::path> graphs(std::initializer_list<const char*> folders) {
   std::vector<fs::path> found;
   for (const char* folder : folders)
     for (const auto& entry : fs::directory_iterator(fs::path(BODEFLOW_SOURCE_DIR) / "graphs" / folder))
-      if (entry.path().extension() == ".yaml") found.push_back(entry.path());
+      if (entry.path().extension() == ".yaml" && !needs_device(entry.path())) found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
 }

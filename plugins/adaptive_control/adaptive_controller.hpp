@@ -15,7 +15,7 @@ class AdaptiveController {
   /// u_l(k) for the measured y(k) and the command u_c(k). Allocates nothing.
   double step(double y, double u_c) {
     bank_.step(y, u_late_, u_c);
-    if (watched_) designer_.watch(y, u_c);
+    if (watched_) designer_.watch(y, u_c, controller_.at_limit());
     const Rst& rst = designer_.step(bank_.response());
     rst_ = rst;
     u_late_ = controller_.step(y, u_c, rst, designer_.anti_windup());

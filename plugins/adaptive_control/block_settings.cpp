@@ -131,6 +131,24 @@ void require_finite(std::span<const double> values, const char* port, std::uint6
   }
 }
 
+namespace {
+
+const char* words_of(Departure departure) {
+  switch (departure) {
+    case Departure::none:
+      return "";
+    case Departure::output:
+      return "the output left its range";
+    case Departure::error:
+      return "the mean error is as large as if nothing were controlled";
+    case Departure::limits:
+      return "the control signal keeps running into its limits while the command rests";
+  }
+  return "";
+}
+
+}  // namespace
+
 RecordBuilder record_of(const NetEvent& event, const std::vector<double>& omega) {
   std::string cause;
   switch (event.net) {
@@ -153,7 +171,7 @@ RecordBuilder record_of(const NetEvent& event, const std::vector<double>& omega)
       cause = "the new controller is far from the one in use: it is approached step by step";
       break;
     case Net::retreat:
-      cause = "the designed controller does worse than none: back to the proportional one, then lower demands";
+      cause = std::string(words_of(event.departure)) + ": back to the proportional controller, then lower demands";
       break;
   }
   RecordBuilder r("net_action");

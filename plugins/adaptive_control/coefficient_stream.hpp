@@ -7,6 +7,9 @@
 
 namespace bodeflow::adaptive_control {
 
+/// The note of a control signal that tells its limits: least and greatest value.
+inline constexpr const char* kLimitsNote = "control.limits";
+
 /// The channels of a stream of controllers: r1 .. r_nr, s0 .. s_ns, t0 .. t_nt, a1 .. a_nr (anti-windup).
 struct CoefficientStream {
   int n_r = 0, n_s = 0, n_t = 0;

@@ -19,17 +19,13 @@ void Design::describe(Describe& d) {
   d.doc(
       "The closed loop G T / (R + G S) is fitted to a desired response G_m at the points, in the sense of least squares of the "
       "relative error (G_cl - G_m) / G_cl, with T = t0 A_o; T is then scaled to S(1) = T(1) where R has integral action. Low "
-      "orders "
-      "control plants of any order, but demands must be within reach: about the speed of the plant itself. Until `start` and "
-      "until "
-      "a design was accepted the controller is u = start_gain (u_c - y). Safety nets: a design is used only if the controller's "
-      "own "
-      "poles, the residual and the sensitivity at the points keep their limits; else the demands are lowered along a ladder; if "
-      "no "
-      "demand is met the last controller stays; the controller moves by nets.rate of its way each sample; and where `setpoint` "
-      "and `y` are connected, an output more than 3 half swings of the command off, or an error as large as the command, leads "
-      "back to the start controller for `pause` samples and to demands two steps lower. Each tells in "
-      "`log` "
+      "orders control plants of any order, but demands must be within reach: about the speed of the plant itself. Until `start` "
+      "and until a design was accepted the controller is u = start_gain (u_c - y). Safety nets: a design is used only if the "
+      "controller's own poles, the residual and the sensitivity at the points keep their limits; else the demands are lowered "
+      "along a ladder; if no demand is met the last controller stays; a designed controller in use moves by nets.rate of its way "
+      "to the newest each sample; and where `setpoint` and `y` are connected, an output more than 3 half swings of the command "
+      "off, an error as large as the command, or (with `u`) a control signal that keeps running into its limits while the "
+      "command rests, leads back to the start controller for `pause` samples and to demands two steps lower. Each tells in `log` "
       "when it begins and ends. They are judged at the points alone: necessary, no proof of stability.");
   d.reference("P.-O. Kallen, Frequency Domain Adaptive Control, Lund 1992, chapters 3 and 7");
   describe_frequencies(d);
@@ -51,6 +47,7 @@ void Design::describe(Describe& d) {
   d.stream_in(response).doc("one complex channel a frequency");
   d.stream_in(setpoint).optional().doc("command; with y: watches the loop");
   d.stream_in(y).optional().doc("output of the plant");
+  d.stream_in(u).optional().doc("limited control signal of adaptive_control.rst; with setpoint and y: limit cycles are seen");
   d.stream_out(coefficients).doc("r1 .., s0 .., t0 .., and the anti-windup polynomial a1 .. = A_o");
   d.message_in(plan)
       .optional()
@@ -85,6 +82,13 @@ DesignerSettings Design::at(double sample_time) const {
 }
 
 void Design::resolve(Facts& f) {
+  f.delay(u, 1);
+  if (f.in(u).known) {
+    const std::vector<double> limits = f.in(u).note(kLimitsNote);
+    if (limits.size() != 2) fail("the stream at 'u' tells no limits; needed: the output of adaptive_control.rst itself");
+    least_u_ = limits[0];
+    most_u_ = limits[1];
+  }
   const StreamFacts& g = f.in(response);
   if (!g.known) return;
   const Designer designer = value_or_fail(Designer::make(at(1.0 / g.rate.hz())));
@@ -145,9 +149,8 @@ void Design::receive(int, const RecordView& record, Io& io) {
 }
 
 void Design::process(Io& io) {
-  const bool watched = io.connected(setpoint) && io.connected(y);
   for (std::size_t n = 0; n < io.count(); ++n) {
-    if (watched) designer_->watch(io.read(y)[n], io.read(setpoint)[n]);
+    watch(io, n);
     for (std::size_t j = 0; j < points_.size(); ++j) points_[j] = io.read(response, static_cast<int>(j))[n];
     last_ = designer_->step(points_.data());
     write(io, n, last_);
@@ -155,6 +158,13 @@ void Design::process(Io& io) {
     for (std::size_t i = 0; i < events.count(); ++i) io.emit(log, record_of(events[i], omega_), n + 1);
     events.clear();
   }
+}
+
+void Design::watch(Io& io, std::size_t n) {
+  if (!io.connected(setpoint) || !io.connected(y)) return;
+  int at_limit = 0;
+  if (io.connected(u)) at_limit = io.read(u)[n] >= most_u_ ? 1 : io.read(u)[n] <= least_u_ ? -1 : 0;
+  designer_->watch(io.read(y)[n], io.read(setpoint)[n], at_limit);
 }
 
 void Design::write(Io& io, std::size_t n, const Rst& rst) const {

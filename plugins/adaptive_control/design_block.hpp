@@ -12,7 +12,7 @@ namespace bodeflow::adaptive_control {
 class Design final : public Block {
  public:
   static constexpr In<std::complex<double>> response{0, "response"};
-  static constexpr In<double> setpoint{1, "setpoint"}, y{2, "y"};
+  static constexpr In<double> setpoint{1, "setpoint"}, y{2, "y"}, u{3, "u"};
   static constexpr Out<double> coefficients{0, "coefficients"};
   static constexpr MessageIn plan{0, "plan"};
   static constexpr MessageOut controller{0, "controller"}, log{1, "log"};
@@ -29,10 +29,12 @@ class Design final : public Block {
 
  private:
   DesignerSettings at(double sample_time) const;
+  void watch(Io& io, std::size_t n);
   void write(Io& io, std::size_t n, const Rst& rst) const;
 
   DesignerSettings settings_;
   double start_s_ = 0.0, bandwidth_ = 1.0, sample_time_ = 1.0;
+  double least_u_ = 0.0, most_u_ = 0.0;
   std::vector<double> omega_;
   std::optional<Designer> designer_;
   CriticalFrequency critical_frequency_;

@@ -66,15 +66,18 @@ Expected<Designer> Designer::make(const DesignerSettings& s) {
   return d;
 }
 
-void Designer::watch(double y, double u_c) {
-  const bool trusted = !adapted_ || paused_ > 0;
+void Designer::watch(double y, double u_c, int at_limit) {
+  using InUse = Watchdog::InUse;
+  const InUse in_use = !adapted_ ? InUse::start_controller : paused_ > 0 ? InUse::start_controller_again : InUse::designed;
+  const Watchdog::Finding found = watchdog_.step(y, u_c, at_limit, in_use);
   if (paused_ > 0) --paused_;
-  if (watchdog_.step(y, u_c, trusted)) {
+  if (found.departure != Departure::none) {
+    departure_ = found.departure;
     paused_ = pause_;
-    found_any_ = false;  // the next accepted design is taken at once: its way begins at none
+    found_any_ = false;
     first_step_ = std::min(first_step_ + 2, ladder_.size() - 1);
   }
-  tell(retreat_net_, paused_ > 0, Net::retreat, watchdog_.distance(), Watchdog::kOutput);
+  tell(retreat_net_, paused_ > 0, Net::retreat, found.value, found.limit);
 }
 
 const Rst& Designer::step(const std::complex<double>* response) {
@@ -116,8 +119,9 @@ void Designer::move() {
   double size = 0.0;
   const double apart = distance(used_.r, wanted.r, wanted.n_r, size) + distance(used_.s, wanted.s, wanted.n_s, size) +
                        distance(used_.t, wanted.t, wanted.n_t, size);
-  distance_ = found_any_ ? apart / size : 0.0;
-  if (!found_any_ || rate_ == 1.0) {
+  const bool at_once = !found_any_ || !adapted_ || paused_ > 0;  // no designed controller is in use
+  distance_ = at_once ? 0.0 : apart / size;
+  if (at_once || rate_ == 1.0) {
     used_ = wanted;
   } else {
     approach(used_.r, wanted.r, wanted.n_r, rate_);
@@ -130,7 +134,7 @@ void Designer::move() {
 void Designer::tell(NetState& state, bool acts, Net net, double value, double limit) {
   const NetState::Change change = state.step(acts);
   if (change == NetState::Change::none) return;
-  log_.add({net, change == NetState::Change::begins, -1, sample_, value, limit, verdict_.refusal});
+  log_.add({net, change == NetState::Change::begins, -1, sample_, value, limit, verdict_.refusal, departure_});
 }
 
 }  // namespace bodeflow::adaptive_control

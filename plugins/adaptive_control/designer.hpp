@@ -5,7 +5,6 @@
 
 #include "acceptance.hpp"
 #include "net_log.hpp"
-#include "watchdog.hpp"
 
 namespace bodeflow::adaptive_control {
 
@@ -25,8 +24,8 @@ struct DesignerSettings {
 };
 
 /// Designs a controller at each sample and lets it through only if it is fit to run: demands that give no acceptable controller
-/// are lowered step by step (`ladder`), a sample without any keeps the last controller, and the controller moves by a share of
-/// its way, which keeps integral action and S(1) = T(1) as they are linear.
+/// are lowered step by step (`ladder`), a sample without any keeps the last controller, and a controller in use moves by a share
+/// of its way, which keeps integral action and S(1) = T(1) as they are linear; until one is in use the newest is taken.
 class Designer {
  public:
   /// Errors: those of RstDesign::make, desired_points and sampled_observer; settings outside their ranges.
@@ -35,9 +34,10 @@ class Designer {
   /// The controller for this sample, from the plant's response at the points. Allocates nothing.
   const Rst& step(const std::complex<double>* response);
 
-  /// Watches the loop, before `step`: a designed controller with which output or error leave all bounds is given up for the start
-  /// controller for a while; demands are two steps of the ladder lower then.
-  void watch(double y, double u_c);
+  /// Watches the loop, before `step`: a designed controller with which output or error leave all bounds, or the last control
+  /// signal keeps running into its limits (-1, 1; else 0) while the command rests, is given up for the start controller for a
+  /// while; demands are two steps of the ladder lower then.
+  void watch(double y, double u_c, int at_limit = 0);
 
   /// Whether a designed controller is in use, or was.
   bool adapted() const { return adapted_; }
@@ -71,6 +71,7 @@ class Designer {
   int pause_ = 0, paused_ = 0;
   std::size_t first_step_ = 0;
   Watchdog watchdog_;
+  Departure departure_ = Departure::none;
   double distance_ = 0.0;
   Verdict verdict_;
   NetState ladder_net_, kept_net_, rate_net_, retreat_net_{1};

@@ -18,12 +18,10 @@ void Estimator::describe(Describe& d) {
       "Input and output of the plant pass the same narrow band-pass filter for each frequency; a model of three parameters, "
       "y_f(t) = -a1 y_f(t-1) - a2 y_f(t-2) + b1 u_f(t-d-1), is fitted by recursive least squares in each band and evaluated at "
       "its centre. After about 30 samples of a step command the estimates are within 1.5 %; with two parameters they are biased "
-      "by "
-      "several per cent. The estimate of sample n uses u up to n - 1, so the block can stand in a feedback loop; `u` must be "
-      "what "
-      "really reaches the plant: the limited signal. Signals should have the size 1, or input_scale and output_scale say their "
-      "size. Safety nets: a band whose excitation is below excitation.share of the control signal's swing is not updated; the "
-      "covariance keeps its initial bound; residuals beyond 3 sigma count as 3 sigma. Each tells in `log` when it begins and "
+      "by several per cent. The estimate of sample n uses u up to n - 1, so the block can stand in a feedback loop; `u` must be "
+      "what really reaches the plant: the limited signal. Signals should have the size 1, or input_scale and output_scale say "
+      "their size. Safety nets: a band whose excitation is below excitation.share of the control signal's swing is not updated; "
+      "the covariance keeps its initial bound; residuals beyond 3 sigma count as 3 sigma. Each tells in `log` when it begins and "
       "ends.");
   d.reference("P.-O. Kallen, Frequency Domain Adaptive Control, Lund 1992, chapters 4 to 6");
   d.reference("G. J. Bierman, Factorization Methods for Discrete Sequential Estimation, 1977");
@@ -31,8 +29,7 @@ void Estimator::describe(Describe& d) {
   d.parameter("delays", std::vector<std::int64_t>{0})
       .doc(
           "d, one for all frequencies or one each: samples at which the plant's step response is nearly 0, less one where the "
-          "plant "
-          "is of low order with a true delay");
+          "plant is of low order with a true delay");
   d.parameter("denominator", std::int64_t{2}).range(0, 2).doc("parameters a of the model");
   d.parameter("numerator", std::int64_t{1}).range(1, 3).doc("parameters b of the model");
   d.parameter("method", "least_squares")

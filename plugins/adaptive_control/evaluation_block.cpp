@@ -29,10 +29,9 @@ void Evaluation::describe(Describe& d) {
       .summary("Collects an adaptive run: its signals, estimates and controllers, and its tracking error.");
   d.doc(
       "The record `adaptive_run` holds all samples; `bodeflow report` draws them as the figures of the thesis: command and "
-      "output, "
-      "control signal, Nyquist curve with the estimates, controllers over time. rms is that of y - desired in the windows. With "
-      "the "
-      "plant given, the error of the estimates is told as well. Keeps all samples in memory: for runs of up to some million.");
+      "output, control signal, Nyquist curve with the estimates, controllers over time. rms is that of y - desired in the "
+      "windows. With the plant given, the error of the estimates is told as well. Keeps all samples in memory: for runs of up to "
+      "some million.");
   d.parameter("windows", std::vector<double>{}).unit("s").doc("times; the tracking error is given from each to the next");
   d.parameter("start", 0.0).unit("s").range(0, 1e12).doc("largest |u| and overshoot are counted from here on");
   d.parameter("frequencies", std::vector<double>{}).unit("rad/s").doc("of the estimates at `response`");

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "acceptance.hpp"
+#include "watchdog.hpp"
 
 namespace bodeflow::adaptive_control {
 
@@ -18,10 +19,11 @@ const char* name_of(Net net);
 struct NetEvent {
   Net net = Net::excitation;
   bool begins = true;
-  int band = -1;                    ///< index of the frequency of fitting, -1 for the design
-  std::int64_t sample = 0;          ///< at which it happened
-  double value = 0.0, limit = 0.0;  ///< what was found, and the limit that it broke
-  Refusal refusal = Refusal::none;  ///< why a design was refused
+  int band = -1;                          ///< index of the frequency of fitting, -1 for the design
+  std::int64_t sample = 0;                ///< at which it happened
+  double value = 0.0, limit = 0.0;        ///< what was found, and the limit that it broke
+  Refusal refusal = Refusal::none;        ///< why a design was refused
+  Departure departure = Departure::none;  ///< why a controller was given up
 };
 
 /// A net that must rest for `hold` samples before its end is told, so that a log has transitions and not every sample.

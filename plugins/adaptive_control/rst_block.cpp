@@ -33,10 +33,8 @@ void RstBlock::describe(Describe& d) {
   d.doc(
       "A_ar u = (A_ar - R) u_l - S y + T u_c with u_l = u within `min` and `max`, computed from past signals alone, so the "
       "coefficients may change at each sample: with R(1) = 0 and S(1) = T(1) a change at rest does not move u. Fixed r, s and t, "
-      "or "
-      "`coefficients` from adaptive_control.design. The output is the limited signal. u(n) depends on y(n): the plant, or what "
-      "stands "
-      "before it, needs a delay of a sample.");
+      "or `coefficients` from adaptive_control.design. The output is the limited signal. u(n) depends on y(n): the plant, or "
+      "what stands before it, needs a delay of a sample.");
   d.reference("P.-O. Kallen, Frequency Domain Adaptive Control, Lund 1992, (6.3)");
   d.optional<std::vector<double>>("r").doc("coefficients of R in descending powers of z, monic");
   d.optional<std::vector<double>>("s").doc("coefficients of S");
@@ -109,6 +107,7 @@ void RstBlock::resolve(Facts& f) {
   out.length = known.length;
   out.clock = known.clock;
   out.unit = unit_;
+  out.notes[kLimitsNote] = {least_, most_};
 }
 
 void RstBlock::activate(const Activation&) { reset(); }

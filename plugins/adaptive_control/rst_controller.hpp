@@ -34,6 +34,8 @@ class RstController {
   /// u(k) before its limits.
   double unlimited() const { return u_[0]; }
   bool saturated() const { return u_[0] != limited_[0]; }
+  /// 1 where u_l is at its greatest value, -1 at its least, else 0.
+  int at_limit() const { return limited_[0] >= most_ ? 1 : limited_[0] <= least_ ? -1 : 0; }
   void reset() { *this = RstController(least_, most_); }
 
  private:

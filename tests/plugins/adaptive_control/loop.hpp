@@ -204,7 +204,7 @@ inline Run run(const Example& e, const Conditions& c) {
     desired.input(u_c);
     bank->step(y, u_late, u_c);
     r.response.emplace_back(bank->response(), bank->response() + bank->points());
-    if (c.watched) designer->watch(y, u_c);
+    if (c.watched) designer->watch(y, u_c, controller.at_limit());
     const ac::Rst& rst = designer->step(c.known_plant ? truth.data() : bank->response());
     u_late = controller.step(y, u_c, rst, designer->anti_windup());
     r.u.push_back(u_late);

@@ -58,6 +58,26 @@ TEST_CASE("the noisy run of example 1 follows the reference run to 1e-8") {
   CHECK(d.response < 1e-8);
 }
 
+TEST_CASE("a run with gate and bound and ladder and rate limit follows the reference run to 1e-8") {
+  auto columns = csv_columns(BODEFLOW_TEST_DATA "/adaptive_control/ex1_safe_run.csv");
+  Example e = example_1();
+  e.bank.point.p0 = 1e4;
+  e.bank.point.forgetting = 0.99;
+  e.bank.point.huber = false;
+  e.bank.excitation_share = 0.0;
+  e.bank.excitation_floor = 1e-3;
+  ac::AdaptiveController controller(*ac::EstimatorBank::make(e.bank), *ac::Designer::make(e.design), ac::RstController(), false);
+  SimulatedPlant plant(e.plant, e.delay);
+  double difference = 0.0;
+  for (std::size_t k = 0; k < columns["k"].size(); ++k) {
+    const double y = plant.output(), u = controller.step(y, columns["uc"][k]);
+    plant.input(u + columns["vl"][k]);
+    difference = std::max({difference, std::abs(y - columns["y"][k]), std::abs(u - columns["u"][k])});
+  }
+  CHECK(columns["k"].size() == 500);
+  CHECK(difference < 1e-8);
+}
+
 TEST_CASE("other coefficients at rest move nothing: R(1) = 0 and S(1) = T(1)") {
   ac::RstController controller;
   const ac::Coefficients a_ar{1.0, -1.2, 0.4};

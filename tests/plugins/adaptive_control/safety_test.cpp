@@ -160,6 +160,53 @@ TEST_CASE("every net that acts tells its cause and its sample") {
   CHECK(begun[ac::Net::rate] >= 1);
 }
 
+TEST_CASE("a limit cycle while the command rests leads to a retreat that tells its cause") {
+  const Example e = example_1();
+  auto designer = *ac::Designer::make(e.design);
+  const auto truth = true_response(e);
+  const auto retreats = [&](double u_c, int at_limit, int samples) {
+    int found = 0;
+    for (int k = 0; k < samples; ++k) {
+      designer.watch(u_c + 0.1 * (k % 2), u_c, k % 10 == 0 ? at_limit : 0);
+      designer.step(truth.data());
+      for (std::size_t i = 0; i < designer.log().count(); ++i) {
+        const ac::NetEvent& event = designer.log()[i];
+        if (event.net != ac::Net::retreat || !event.begins) continue;
+        ++found;
+        CHECK(event.departure == ac::Departure::limits);
+        CHECK(event.value > event.limit);
+      }
+      designer.log().clear();
+    }
+    return found;
+  };
+  CHECK(retreats(1.0, 1, 60) == 0);                                                               // the start controller
+  CHECK(retreats(-1.0, 0, 100) == 0);                                                             // a designed one without limits
+  for (int step = 0; step < 10; ++step) CHECK(retreats(step % 2 == 0 ? 1.0 : -1.0, 1, 40) == 0);  // commands that change
+  CHECK(retreats(1.0, 1, 100) == 1);
+}
+
+TEST_CASE("an actuator that stays at its limit is no limit cycle") {
+  ac::Watchdog watchdog;
+  using InUse = ac::Watchdog::InUse;
+  watchdog.step(0.0, -1.0, 0, InUse::start_controller);
+  for (int k = 0; k < 2000; ++k) {
+    CHECK(watchdog.step(0.5, 1.0, 1, InUse::designed).departure == ac::Departure::none);
+  }
+}
+
+TEST_CASE("what swings out after a retreat does not widen the range of the watch") {
+  ac::Watchdog watchdog;
+  using InUse = ac::Watchdog::InUse;
+  watchdog.step(0.0, -1.0, 0, InUse::start_controller);
+  watchdog.step(0.0, 1.0, 0, InUse::start_controller);
+  CHECK(watchdog.step(3.5, 1.0, 0, InUse::designed).departure == ac::Departure::output);
+  watchdog.step(9.0, 1.0, 0, InUse::start_controller_again);
+  const auto found = watchdog.step(3.5, 1.0, 0, InUse::designed);
+  CHECK(found.departure == ac::Departure::output);
+  CHECK(found.value == 3.5);
+}
+
 TEST_CASE("a controller that a changed plant makes unstable is given up, and demands are lowered") {
   Example e = example_1();
   e.bank.point.forgetting = 0.99;

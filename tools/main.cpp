@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   add_rerun(app, session);
   add_report(app, session);
   add_export(app, session);
+  add_trust(app, session);
   add_doctor(app, session);
   add_completion(app, session);
   add_internal(app, session);

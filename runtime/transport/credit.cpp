@@ -7,6 +7,7 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x52434642;
 constexpr std::uint16_t kVersion = 1;
+constexpr std::uint16_t kNear = 1;
 
 }  // namespace
 
@@ -14,7 +15,7 @@ std::vector<std::byte> encode(const Credit& credit) {
   cdr::Writer writer;
   writer.put(kMagic);
   writer.put(kVersion);
-  writer.put(std::uint16_t{0});
+  writer.put(static_cast<std::uint16_t>(credit.near ? kNear : 0));
   writer.put(credit.stream);
   writer.put(credit.inlet);
   writer.put(credit.epoch);
@@ -35,6 +36,7 @@ tl::expected<Credit, std::string> decode_credit(std::span<const std::byte> bytes
   for (auto& octet : credit.reader) whole = whole && reader.get(octet);
   whole = whole && reader.get(reserved) && reader.get(credit.taken);
   if (!whole) return tl::unexpected<std::string>("a credit that is cut short");
+  credit.near = (flags & kNear) != 0;
   return credit;
 }
 

@@ -16,6 +16,7 @@ struct Credit {
   std::uint64_t inlet = 0;
   std::uint32_t epoch = 0;
   std::array<std::uint8_t, 16> reader{};  ///< GUID of its data reader
+  bool near = false;                      ///< it reads in shared memory too
   std::uint64_t taken = 0;
 };
 

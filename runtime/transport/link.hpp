@@ -26,6 +26,8 @@ struct Edge {
   double tolerance_s = 10.0;                           ///< without any progress for this long the edge fails
   std::uint64_t queue_bytes = std::uint64_t{4} << 20;  ///< what may be under way: the credit of the reader
   int readers = 1;                                     ///< that must have matched before anything is written
+  bool open = false;                                   ///< shared with other DDS programs: an outlet counts any reader, an inlet
+                                                       ///< begins with whatever comes first and, with stream 0, takes its stream
 };
 
 /// What is known of an edge while it runs; read by any thread.

@@ -1,0 +1,289 @@
+#include <arpa/inet.h>
+#include <fastdds/rtps/transport/TCPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+
+#include "transport/fast_dds.hpp"
+#include "transport/leave.hpp"
+
+namespace bodeflow::transport::fast_dds {
+namespace {
+
+using Carrier = Settings::Carrier;
+using eprosima::fastrtps::Duration_t;
+using eprosima::fastrtps::rtps::IPLocator;
+
+constexpr std::uint32_t kSocketBuffer = 4u << 20;   // a burst of 1 MB samples; the kernel may grant less
+constexpr std::uint32_t kSegment = 16u << 20;       // of shared memory, touched whole when it is made
+constexpr std::uint32_t kSharedMessage = 1u << 20;  // larger samples go in pieces
+constexpr std::uint32_t kPeerRange = 8;             // participants that a peer without a port may have on its host
+constexpr std::uint16_t kServerPort = 11811;
+constexpr std::uint16_t kTcpPort = 5100;
+constexpr std::uint16_t kTcpPorts = 8;
+
+struct Address {
+  std::string host;
+  std::uint16_t port = 0;
+};
+
+tl::expected<Address, std::string> parse_address(const std::string& text) {
+  const auto colon = text.rfind(':');
+  Address address{text.substr(0, colon), 0};
+  in_addr parsed{};
+  bool good = inet_pton(AF_INET, address.host.c_str(), &parsed) == 1;
+  if (colon != std::string::npos) {
+    const char* end = text.data() + text.size();
+    const auto number = std::from_chars(text.data() + colon + 1, end, address.port);
+    good = good && number.ec == std::errc{} && number.ptr == end && address.port != 0;
+  }
+  if (!good) return tl::unexpected("peer '" + text + "' is not an IPv4 address with or without a port (10.0.0.2:11811)");
+  return address;
+}
+
+void add_transport(dds::DomainParticipantQos& qos, const Settings& settings, Carrier carrier) {
+  using namespace eprosima::fastdds::rtps;
+  auto interfaces = settings.interfaces;
+  if (!interfaces.empty()) interfaces.emplace_back("127.0.0.1");
+  auto& transports = qos.transport().user_transports;
+  qos.transport().use_builtin_transports = false;
+  if (carrier == Carrier::shared_memory) {
+    auto memory = std::make_shared<SharedMemTransportDescriptor>();
+    memory->segment_size(kSegment);
+    memory->max_message_size(kSharedMessage);
+    transports.push_back(memory);
+  } else if (carrier == Carrier::tcp) {
+    auto tcp = std::make_shared<TCPv4TransportDescriptor>();
+    tcp->sendBufferSize = tcp->receiveBufferSize = kSocketBuffer;
+    tcp->interfaceWhiteList = interfaces;
+    tcp->enable_tcp_nodelay = true;
+    transports.push_back(tcp);
+  } else {
+    auto udp = std::make_shared<UDPv4TransportDescriptor>();
+    udp->sendBufferSize = udp->receiveBufferSize = kSocketBuffer;
+    udp->maxMessageSize = settings.datagram;
+    udp->interfaceWhiteList = interfaces;
+    udp->maxInitialPeersRange = kPeerRange;
+    transports.push_back(udp);
+  }
+}
+
+/// The first TCP port that nobody on this host listens on; 0: none of the eight.
+std::uint16_t free_tcp_port(std::uint32_t domain) {
+  for (std::uint16_t i = 0; i < kTcpPorts; ++i) {
+    const auto port = static_cast<std::uint16_t>(kTcpPort + 10 * domain + i);
+    const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (probe < 0) return 0;
+    const int yes = 1;
+    setsockopt(probe, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    const bool free = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    close(probe);
+    if (free) return port;
+  }
+  return 0;
+}
+
+rtps::Locator_t locator(const Address& address, Carrier carrier) {
+  rtps::Locator_t made;
+  made.kind = carrier == Carrier::tcp ? LOCATOR_KIND_TCPv4 : LOCATOR_KIND_UDPv4;
+  IPLocator::setIPv4(made, address.host);
+  if (carrier == Carrier::tcp) {
+    IPLocator::setPhysicalPort(made, address.port);
+  } else {
+    made.port = address.port;
+  }
+  return made;
+}
+
+void add_server(dds::DomainParticipantQos& qos, Address address, Carrier carrier, std::size_t index) {
+  if (address.port == 0) address.port = kServerPort;
+  rtps::RemoteServerAttributes server;
+  server.ReadguidPrefix("44.53.00.5f.45.50.52.4f.53.49.4d.41");
+  server.guidPrefix.value[2] = static_cast<rtps::octet>(index);  // servers of a list are numbered from 0
+  auto where = locator(address, carrier);
+  if (carrier == Carrier::tcp) IPLocator::setLogicalPort(where, address.port);
+  server.metatrafficUnicastLocatorList.push_back(where);
+  qos.wire_protocol().builtin.discovery_config.m_DiscoveryServers.push_back(server);
+}
+
+tl::expected<void, std::string> add_peers(dds::DomainParticipantQos& qos, const Settings& settings, Carrier carrier) {
+  auto& builtin = qos.wire_protocol().builtin;
+  if (carrier == Carrier::tcp) {
+    const auto port = free_tcp_port(settings.domain);
+    if (port == 0)
+      return tl::unexpected<std::string>("no free TCP port from " + std::to_string(kTcpPort + 10 * settings.domain) + " on");
+    static_cast<eprosima::fastdds::rtps::TCPv4TransportDescriptor&>(*qos.transport().user_transports.front())
+        .add_listener_port(port);
+  }
+  if (carrier == Carrier::shared_memory) return {};
+  if (settings.discovery == Settings::Discovery::multicast && carrier == Carrier::udp) return {};
+  const bool servers = settings.discovery == Settings::Discovery::server;
+  if (servers && settings.peers.empty()) return tl::unexpected<std::string>("no discovery server is named");
+  if (servers) {
+    builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::CLIENT;
+    builtin.discovery_config.discoveryServer_client_syncperiod = Duration_t(0.1);
+  } else if (carrier == Carrier::udp) {
+    builtin.metatrafficUnicastLocatorList.push_back(rtps::Locator_t());  // any address, the usual port: and so no multicast
+  }
+  for (std::size_t i = 0; i < settings.peers.size(); ++i) {
+    const auto address = parse_address(settings.peers[i]);
+    if (!address) return tl::unexpected(address.error());
+    if (servers) {
+      add_server(qos, *address, carrier, i);
+    } else if (carrier == Carrier::tcp && address->port == 0) {
+      for (std::uint16_t k = 0; k < kTcpPorts; ++k) {
+        const auto port = static_cast<std::uint16_t>(kTcpPort + 10 * settings.domain + k);
+        builtin.initialPeersList.push_back(locator({address->host, port}, carrier));
+      }
+    } else {
+      builtin.initialPeersList.push_back(locator(*address, carrier));
+    }
+  }
+  return {};
+}
+
+tl::expected<void, std::string> add_security(dds::DomainParticipantQos& qos, const Security& security) {
+  auto& properties = qos.properties().properties();
+  const auto set = [&](const char* name, const std::string& value) { properties.emplace_back(name, value); };
+  std::string missing;
+  const auto file = [&](const std::string& name, const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) missing = path.string();
+    set(name.c_str(), "file://" + std::filesystem::absolute(path).string());
+  };
+  set("dds.sec.auth.plugin", "builtin.PKI-DH");
+  file("dds.sec.auth.builtin.PKI-DH.identity_ca", security.authority);
+  file("dds.sec.auth.builtin.PKI-DH.identity_certificate", security.certificate);
+  file("dds.sec.auth.builtin.PKI-DH.private_key", security.key);
+  if (!security.revocations.empty()) file("dds.sec.auth.builtin.PKI-DH.identity_crl", security.revocations);
+  set("dds.sec.access.plugin", "builtin.Access-Permissions");
+  file("dds.sec.access.builtin.Access-Permissions.permissions_ca", security.authority);
+  file("dds.sec.access.builtin.Access-Permissions.governance", security.governance);
+  file("dds.sec.access.builtin.Access-Permissions.permissions", security.permissions);
+  set("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+  if (!missing.empty()) return tl::unexpected("no file '" + missing + "' (security of this participant)");
+  return {};
+}
+
+/// Keeps the last error.
+class ErrorKeeper final : public dds::LogConsumer {
+ public:
+  void Consume(const dds::Log::Entry& entry) override {
+    if (entry.kind != dds::Log::Kind::Error) return;
+    const std::lock_guard lock(mutex());
+    text() = entry.message;
+  }
+  static std::mutex& mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  static std::string& text() {
+    static std::string text;
+    return text;
+  }
+};
+
+class FastNode final : public middleware::Node {
+ public:
+  explicit FastNode(std::shared_ptr<Domain> domain) : domain_(std::move(domain)) {}
+  ~FastNode() override {
+    leave([domain = std::move(domain_)]() mutable { domain.reset(); });
+  }
+  WriterResult writer(const middleware::Topic& topic, std::weak_ptr<middleware::WriterSink> sink) override {
+    return open_writer(domain_, topic, std::move(sink));
+  }
+  ReaderResult reader(const middleware::Topic& topic, std::weak_ptr<middleware::ReaderSink> sink) override {
+    return open_reader(domain_, topic, std::move(sink));
+  }
+
+ private:
+  std::shared_ptr<Domain> domain_;
+};
+
+}  // namespace
+
+void catch_errors() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    dds::Log::ClearConsumers();
+    dds::Log::SetVerbosity(dds::Log::Kind::Error);
+    dds::Log::RegisterConsumer(std::make_unique<ErrorKeeper>());
+  });
+}
+
+std::string last_error() {
+  dds::Log::Flush();
+  const std::lock_guard lock(ErrorKeeper::mutex());
+  return ErrorKeeper::text().empty() ? "Fast DDS gives no reason" : ErrorKeeper::text();
+}
+
+tl::expected<dds::DomainParticipantQos, std::string> participant_qos(const Settings& settings, Carrier carrier) {
+  dds::DomainParticipantQos qos;
+  qos.name(settings.name);
+  if (carrier == Carrier::udp && (settings.datagram < 512 || settings.datagram > 65500)) {
+    return tl::unexpected("datagram of " + std::to_string(settings.datagram) + " bytes (allowed: 512 to 65500)");
+  }
+  add_transport(qos, settings, carrier);
+  auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  discovery.leaseDuration = Duration_t(settings.lease_s);
+  discovery.leaseDuration_announcementperiod = Duration_t(std::min(1.0, settings.lease_s / 4.0));
+  discovery.initial_announcements.count = 10;
+  discovery.initial_announcements.period = Duration_t(0.1);
+  if (auto done = add_peers(qos, settings, carrier); !done) return tl::unexpected(done.error());
+  if (settings.security) {
+    if (auto done = add_security(qos, *settings.security); !done) return tl::unexpected(done.error());
+  }
+  return qos;
+}
+
+Domain::Domain(dds::DomainParticipant* participant) : participant_(participant) {}
+
+Domain::~Domain() {
+  participant_->delete_contained_entities();
+  dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+bool Domain::open() {
+  publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
+  subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  for (const auto type : {middleware::Type::message, middleware::Type::credit}) {
+    if (type_support(type).register_type(participant_) != ReturnCode_t::RETCODE_OK) return false;
+  }
+  return publisher_ != nullptr && subscriber_ != nullptr;
+}
+
+dds::Topic* Domain::topic(const middleware::Topic& wanted) {
+  const std::lock_guard lock(mutex_);
+  auto& topic = topics_[wanted.name];
+  if (topic == nullptr) {
+    topic = participant_->create_topic(wanted.name, type_support(wanted.type).get_type_name(), dds::TOPIC_QOS_DEFAULT);
+  }
+  return topic;
+}
+
+}  // namespace bodeflow::transport::fast_dds
+
+namespace bodeflow::transport::middleware {
+
+tl::expected<std::shared_ptr<Node>, std::string> join(const Settings& settings, Settings::Carrier carrier) {
+  fast_dds::catch_errors();
+  auto qos = fast_dds::participant_qos(settings, carrier);
+  if (!qos) return tl::unexpected(qos.error());
+  auto* participant = fast_dds::dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, *qos);
+  if (participant == nullptr) return tl::unexpected("Fast DDS made no participant: " + fast_dds::last_error());
+  auto domain = std::make_shared<fast_dds::Domain>(participant);
+  const bool open = domain->open();
+  auto node = std::make_shared<fast_dds::FastNode>(std::move(domain));
+  if (!open) return tl::unexpected("Fast DDS made no publisher or subscriber: " + fast_dds::last_error());
+  return node;
+}
+
+}  // namespace bodeflow::transport::middleware

@@ -66,6 +66,19 @@ TEST_CASE("a setting that does not fit is a failure of the setting") {
   CHECK(finding(check_plugin(BODEFLOW_GOOD_PLUGIN, options), "can be set up") == "parameter 'length': 'ten' is not a number");
 }
 
+TEST_CASE("what a setting says of one input must name one that the block has") {
+  const auto of = [](const std::string& feed) {
+    Options options = only("good.mean");
+    options.settings = *parse_settings("good.mean: length = 10, " + feed + "\n");
+    return finding(check_plugin(BODEFLOW_GOOD_PLUGIN, options), "can be set up");
+  };
+  CHECK(of("@channels.in = 3, @note.in.noise.std = [0.1, 0.2]") == "passes");
+  CHECK(of("@channels.inn = 3") == "@channels.inn: the block has no stream input 'inn'");
+  CHECK(of("@note.out.noise.std = [1]") == "@note.out.noise.std: the block has no stream input 'out'");
+  CHECK(of("@note.in.noise.std = 1") == "@note.in.noise.std: '1' has not the form [1, 2]");
+  CHECK(of("@unconnected = in") == "@unconnected: the block has no optional stream input 'in'");
+}
+
 TEST_CASE("each breach of the contract is found by its check") {
   const auto of = [](const char* block, const char* name) {
     return finding(check_plugin(BODEFLOW_BAD_PLUGIN, only(block)), name);

@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <bodeflow/testing/conformance.hpp>
-#include <bodeflow/units.hpp>
-#include <cmath>
 
 #include "checks.hpp"
 #include "descriptor_check.hpp"
+#include "feed_settings.hpp"
 #include "part_checks.hpp"
 #include "plugin_file.hpp"
 
@@ -25,30 +24,6 @@ std::string text_of(const Setting& setting) {
   return text;
 }
 
-double quantity(const std::string& text, const char* unit) {
-  const auto value = convert(text, unit);
-  if (!value) fail(value.error().text);
-  return *value;
-}
-
-/// What a name with '@' says about the feed.
-void set_feed(Feed& feed, const std::string& name, const std::string& value) {
-  if (name == "@rate") {
-    feed.rate = Rate::from_hz(quantity(value, "Hz"));
-    if (!feed.rate.known()) fail("@rate: '" + value + "' is not a rate");
-  } else if (name == "@channels") {
-    feed.channels = static_cast<std::uint32_t>(std::clamp(quantity(value, "1"), 1.0, 1024.0));
-  } else if (name == "@period") {
-    feed.period = static_cast<std::uint64_t>(std::clamp(quantity(value, "1"), 1.0, 1e7));
-  } else if (name == "@firings") {
-    feed.firings = static_cast<std::uint64_t>(std::clamp(quantity(value, "1"), 1.0, 1e7));
-  } else if (name == "@element" && (value == "f64" || value == "c64")) {
-    feed.element = value == "f64" ? BF_F64 : BF_C64;
-  } else {
-    fail("'" + name + " = " + value + "' is unknown; known: @rate, @channels, @period, @firings, @element = f64 or c64");
-  }
-}
-
 /// The case of a setting. Throws Failure for a parameter that does not exist or a value that it can't have.
 Case make_case(const bf_factory& factory, const Setting& setting) {
   Case c;
@@ -57,7 +32,7 @@ Case make_case(const bf_factory& factory, const Setting& setting) {
   for (std::uint32_t i = 0; i < c.block->parameter_count; ++i) c.values.push_back(fallback_of(*c.block->parameters[i]));
   for (const auto& [name, value] : setting) {
     if (!name.empty() && name[0] == '@') {
-      set_feed(c.feed, name, value);
+      set_feed(c.feed, *c.block, name, value);
       continue;
     }
     std::uint32_t index = 0;

@@ -40,6 +40,12 @@ Rig::Rig(const Case& the_case) : case_(the_case), host_(std::make_unique<TestHos
     if (p->kind == BF_MESSAGE && p->direction == BF_IN) message_inputs_.push_back(p);
     if (p->kind == BF_MESSAGE && p->direction == BF_OUT) ++message_outputs_;
   }
+  for (const bf_port_descriptor* port : inputs_) {
+    auto& list = notes_.emplace_back();
+    const auto found = case_.feed.notes.find(port->name);
+    if (found == case_.feed.notes.end()) continue;
+    for (const auto& [name, values] : found->second) list.push_back({name.c_str(), values.data(), values.size()});
+  }
   require(case_.factory->create(case_.factory, host_->c(), &block_), "create");
   if (block_.struct_size == 0 || block_.destroy == nullptr || block_.process == nullptr)
     fail("create gives an incomplete bf_block");
@@ -64,18 +70,24 @@ void Rig::configure() {
 
 std::vector<bf_stream_facts> Rig::input_facts(bool known) const {
   std::vector<bf_stream_facts> facts;
-  for (const bf_port_descriptor* port : inputs_) {
+  const Feed& feed = case_.feed;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const bf_port_descriptor* port = inputs_[i];
     bf_stream_facts f{};
     f.struct_size = sizeof f;
     f.length = -1;
     f.unit = f.clock = "";
     f.rate = {0, 1};
-    const bool connected = case_.feed.optional_connected || (port->flags & BF_PORT_OPTIONAL) == 0;
+    const bool may_be_open = (port->flags & BF_PORT_OPTIONAL) != 0;
+    const bool connected = !may_be_open || (feed.optional_connected && feed.unconnected.count(port->name) == 0);
     if (known && connected) {
       f.known = 1;
-      f.element = port->element == BF_ANY ? case_.feed.element : port->element;
-      f.channels = case_.feed.channels;
-      f.rate = case_.feed.rate.c();
+      const auto own = feed.channels_of.find(port->name);
+      f.element = port->element == BF_ANY ? feed.element : port->element;
+      f.channels = own == feed.channels_of.end() ? feed.channels : own->second;
+      f.rate = feed.rate.c();
+      f.notes = notes_[i].data();
+      f.note_count = notes_[i].size();
     }
     facts.push_back(f);
   }

@@ -2,7 +2,9 @@
 
 #include <bodeflow/rate.hpp>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,7 +16,10 @@ namespace bodeflow::testing {
 /// What the inputs of a block under test are like.
 struct Feed {
   std::uint32_t channels = 1;
-  std::uint32_t element = BF_F64;  ///< of ports that take either
+  std::map<std::string, std::uint32_t> channels_of;                         ///< of ports that have others
+  std::map<std::string, std::map<std::string, std::vector<double>>> notes;  ///< of the streams, by port
+  std::set<std::string> unconnected;                                        ///< optional ports
+  std::uint32_t element = BF_F64;                                           ///< of ports that take either
   Rate rate{1000, 1};
   std::uint64_t firings = 2600;
   std::uint64_t period = 0;  ///< samples after which the signal repeats, but for some noise; 0: it is all noise
@@ -23,7 +28,8 @@ struct Feed {
   enum class Messages { none, empty } messages = Messages::none;  ///< empty: a record without content to each message input
 
   bool operator==(const Feed& o) const {
-    return channels == o.channels && element == o.element && rate == o.rate && firings == o.firings && period == o.period &&
+    return channels == o.channels && channels_of == o.channels_of && notes == o.notes && unconnected == o.unconnected &&
+           element == o.element && rate == o.rate && firings == o.firings && period == o.period &&
            optional_connected == o.optional_connected && signal == o.signal && messages == o.messages;
   }
 };
@@ -131,6 +137,7 @@ class Rig {
   std::unique_ptr<TestHost> host_;
   bf_block block_{};
   std::vector<const bf_port_descriptor*> inputs_, outputs_, message_inputs_;
+  std::vector<std::vector<bf_note>> notes_;  // by input
   std::uint32_t message_outputs_ = 0;
   Resolved facts_;
   bool active_ = false;

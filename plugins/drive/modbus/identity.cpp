@@ -2,17 +2,12 @@
 
 #include <cmath>
 
-#include "records/signals.hpp"
 #include "register_value.hpp"
 
 namespace bodeflow::drive::modbus {
 
 using numerics::Expected;
 using numerics::refused;
-
-std::string quantity(double value, const Register& r) {
-  return records::short_number(value) + (r.unit == "1" ? "" : " " + r.unit);
-}
 
 Expected<double> read_value(Link& link, const Register& r) {
   std::uint16_t words[2] = {};

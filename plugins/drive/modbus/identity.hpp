@@ -10,7 +10,4 @@ numerics::Expected<double> read_value(Link& link, const Register& r);
 /// Whether the device is the one that the map is of. Errors: a register that reads something else, those of Link.
 numerics::Expected<void> check_identity(Link& link, const RegisterMap& map);
 
-/// "12.5 rpm"; the number alone where there is no dimension.
-std::string quantity(double value, const Register& r);
-
 }  // namespace bodeflow::drive::modbus

@@ -9,6 +9,7 @@
 #include "connection_parameters.hpp"
 #include "records/signals.hpp"
 #include "register_map_file.hpp"
+#include "register_value.hpp"
 
 namespace bodeflow::drive::modbus {
 namespace {
@@ -238,9 +239,9 @@ void ModbusBlock::take_set_points(Io& io, std::size_t n) {
     const Register& r = setup_.map.registers[setup_.set_points[c]];
     wanted_[c] = io.connected(set_points) ? io.read(set_points, static_cast<int>(c))[n] : r.safe;
     if (wanted_[c] >= r.minimum && wanted_[c] <= r.maximum) continue;
-    const std::string found = std::isfinite(wanted_[c]) ? short_number(wanted_[c]) + " " + r.unit : "not finite";
+    const std::string found = std::isfinite(wanted_[c]) ? quantity(wanted_[c], r) : "not finite";
     stop_and_fail("limit violated: set point '" + r.name + "' is " + found + " at sample " + std::to_string(io.position() + n) +
-                  ", allowed: " + short_number(r.minimum) + " to " + short_number(r.maximum) + " " + r.unit);
+                  ", allowed: " + short_number(r.minimum) + " to " + quantity(r.maximum, r));
   }
 }
 

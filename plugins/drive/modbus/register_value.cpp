@@ -1,5 +1,6 @@
 #include "register_value.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -46,6 +47,8 @@ std::uint32_t bits_of(Encoding encoding, double raw) {
 
 }  // namespace
 
+std::string quantity(double value, const Register& r) { return short_number(value) + (r.unit == "1" ? "" : " " + r.unit); }
+
 double decoded(const Register& r, const std::uint16_t* words) {
   if (r.encoding == Encoding::uint16) return r.scale * words[0];
   if (r.encoding == Encoding::int16) return r.scale * static_cast<std::int16_t>(words[0]);
@@ -64,9 +67,9 @@ Expected<std::array<std::uint16_t, 2>> encoded(const Register& r, double value) 
   const double raw = r.encoding == Encoding::float32 ? exact : std::round(exact);
   const auto [least, greatest] = range_of(r.encoding);
   if (!(raw >= least && raw <= greatest)) {
-    return refused(name_of(r) + " is to be " + short_number(value) + " " + r.unit + ", allowed as " + name_of(r.encoding) + ": " +
-                   short_number(std::min(least * r.scale, greatest * r.scale)) + " to " +
-                   short_number(std::max(least * r.scale, greatest * r.scale)) + " " + r.unit);
+    const double first = least * r.scale, last = greatest * r.scale;
+    return refused(name_of(r) + " is to be " + quantity(value, r) + ", allowed as " + name_of(r.encoding) + ": " +
+                   short_number(std::min(first, last)) + " to " + quantity(std::max(first, last), r));
   }
   const std::uint32_t bits = bits_of(r.encoding, raw);
   const auto high = static_cast<std::uint16_t>(bits >> 16U), low = static_cast<std::uint16_t>(bits & 0xFFFFU);

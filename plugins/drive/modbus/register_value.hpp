@@ -8,6 +8,9 @@
 
 namespace bodeflow::drive::modbus {
 
+/// "12.5 rpm"; the number alone where there is no dimension.
+std::string quantity(double value, const Register& r);
+
 /// The value that one or two words stand for, in the register's unit. A float32 may be NaN or infinite: the caller looks.
 double decoded(const Register& r, const std::uint16_t* words);
 

@@ -23,7 +23,8 @@ using numerics::refused;
 constexpr int kRegisters = 65536;
 constexpr int kMostRead = 125, kMostWritten = 123;
 constexpr int kClients = 8;
-constexpr int kTick = 1;  // ms between two looks at the clock
+constexpr double kLongestStep = 0.05;  // s
+constexpr int kTick = 1;               // ms between two looks at the clock
 constexpr auto kSlow = std::chrono::milliseconds(30);
 
 int word_at(const std::uint8_t* bytes) { return bytes[0] << 8 | bytes[1]; }
@@ -86,10 +87,11 @@ void ModbusServer::close_all() {
   listener_ = -1;
 }
 
-/// Lets as much time pass for the drive as has passed.
+/// Lets as much time pass for the drive as has passed. Where this process did not run for long the drive stood still with it:
+/// else its watchdog would trip on questions that lie here unread.
 void ModbusServer::catch_up() {
   const auto now = Clock::now();
-  drive_.advance(std::chrono::duration<double>(now - now_).count());
+  drive_.advance(std::min(std::chrono::duration<double>(now - now_).count(), kLongestStep));
   now_ = now;
 }
 
@@ -194,6 +196,28 @@ void ModbusServer::send_raw(int socket, const std::uint8_t* bytes, std::size_t c
   }
 }
 
+/// An answer of the right length whose checksum (RTU) or number of the question (TCP) is wrong.
+void ModbusServer::send_damaged(int socket, const std::uint8_t* question) const {
+  const int header = modbus_get_header_length(context_);
+  const std::uint8_t* body = question + header;
+  std::vector<std::uint8_t> answer;
+  if (body[0] == MODBUS_FC_READ_HOLDING_REGISTERS) {
+    answer = {body[0], static_cast<std::uint8_t>(2 * body[4])};
+    answer.resize(2 + 2 * static_cast<std::size_t>(body[4]));
+  } else {
+    answer.assign(body, body + 5);
+  }
+  answer.insert(answer.begin(), question[header - 1]);
+  if (is_tcp_) {
+    const std::uint8_t front[] = {question[0], static_cast<std::uint8_t>(question[1] ^ 0x55U), 0, 0,
+                                  0,           static_cast<std::uint8_t>(answer.size())};
+    answer.insert(answer.begin(), std::begin(front), std::end(front));
+  } else {
+    answer.insert(answer.end(), {0x12, 0x34});
+  }
+  send_raw(socket, answer.data(), answer.size());
+}
+
 bool ModbusServer::disturbed(int socket, const std::uint8_t* question, int) {
   if (kind_ == Disturbance::none || left_ == 0) return false;
   if (left_ > 0) --left_;
@@ -211,13 +235,9 @@ bool ModbusServer::disturbed(int socket, const std::uint8_t* question, int) {
       send_raw(socket, is_tcp_ ? tcp : rtu, is_tcp_ ? sizeof tcp : sizeof rtu);
       return true;
     }
-    case Disturbance::damaged: {
-      const std::uint8_t other = question[1] ^ 0x55U;
-      const std::uint8_t tcp[] = {question[0], other, 0, 0, 0, 5, unit, function, 2, 1, 2};
-      const std::uint8_t rtu[] = {unit, function, 2, 1, 2, 0, 0};
-      send_raw(socket, is_tcp_ ? tcp : rtu, is_tcp_ ? sizeof tcp : sizeof rtu);
+    case Disturbance::damaged:
+      send_damaged(socket, question);
       return true;
-    }
     case Disturbance::reset: {
       if (!is_tcp_) return true;
       const linger at_once{1, 0};

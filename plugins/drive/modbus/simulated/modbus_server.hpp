@@ -65,6 +65,7 @@ class ModbusServer {
   void reply(const std::uint8_t* question, int length);
   int read_exception(int address, int count);
   bool disturbed(int socket, const std::uint8_t* question, int length);
+  void send_damaged(int socket, const std::uint8_t* question) const;
   void send_raw(int socket, const std::uint8_t* bytes, std::size_t count) const;
   void close_all();
 

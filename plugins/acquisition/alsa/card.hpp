@@ -1,0 +1,33 @@
+#pragma once
+
+#include "acquisition/device/channels.hpp"
+#include "acquisition/device/device_record.hpp"
+#include "pcm.hpp"
+
+namespace bodeflow::acquisition {
+
+/// What the ALSA blocks are told of a sound card.
+struct Card {
+  PcmSpec spec;  ///< without direction, rate and channels
+  std::string clock;
+  bool mark_gaps = false;
+};
+
+/// Describes device, clock, format, period, buffer, timeout, on_gap.
+void describe_card(Describe& d);
+Card read_card(const Parameters& p);
+
+/// The rate as libasound takes it. Throws Failure for one that is no whole number of hertz.
+unsigned whole_rate(const Rate& rate);
+
+/// Throws Failure for a sample that is not finite.
+void require_finite(std::span<const double> values, std::uint64_t first, int channel);
+
+/// How long a device stood still: from where its last stamp puts sample `position` to now, in samples. None without a stamp.
+std::optional<std::int64_t> samples_missing(const DeviceClock& clock, std::int64_t position, const Rate& rate);
+
+/// Describes ac_corner, the -3 dB frequency of an AC-coupled input, and notes it in the facts of a stream as `sensor.ac_corner`.
+void describe_ac_corner(Describe& d);
+void note_ac_corner(const std::optional<double>& corner_hz, StreamFacts& facts);
+
+}  // namespace bodeflow::acquisition

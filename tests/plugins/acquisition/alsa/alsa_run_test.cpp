@@ -1,0 +1,250 @@
+// The ALSA blocks in whole runs, on the sound card of loop_pcm.cpp.
+#include <complex>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "catch.hpp"
+#include "system/command.hpp"
+
+using bodeflow::test::Ended;
+using bodeflow::test::Folder;
+using bodeflow::test::run_bodeflow;
+using Catch::Matchers::Contains;
+using nlohmann::json;
+using Complex = std::complex<double>;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kGraphs = BODEFLOW_SOURCE_DIR "/graphs/acquisition/";
+
+/// A folder with an ALSA configuration of one card, `loop`.
+class Bench {
+ public:
+  explicit Bench(const std::string& settings) {
+    folder.write("asound.conf", "pcm_type.bodeflow_loop { lib \"" BODEFLOW_TEST_SOUND_CARD
+                                "\" }\npcm.loop { type bodeflow_loop " +
+                                    settings + " }\n");
+  }
+  Ended run(std::vector<std::string> words) const {
+    words.insert(words.begin(), "run");
+    fs::remove_all(folder.path() / "out");
+    words.insert(words.end(), {"--out", "out"});
+    return run_bodeflow(words, folder.path(), {"ALSA_CONFIG_PATH=" + (folder.path() / "asound.conf").string()});
+  }
+  /// A graph of ours on the card, with more room than a busy machine needs.
+  json measure(const std::string& graph, std::vector<std::string> settings) const {
+    settings.insert(settings.end(),
+                    {"device=loop", "blocks.card.buffer=16384", "blocks.card.lead=14000", "blocks.response.skip=4"});
+    std::vector<std::string> words{kGraphs + graph};
+    for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+    return results(words);
+  }
+  /// Of a run that must go well.
+  json results(const std::vector<std::string>& words) const {
+    const Ended ended = run(words);
+    INFO(ended.err);
+    REQUIRE(ended.exit_code == 0);
+    return json::parse(folder.read("out/result.json"))["results"];
+  }
+  /// The graph of one capture block that records what it gives for `duration`.
+  std::string capture(const std::string& parameters, const std::string& duration = "0.5 s",
+                      const std::string& clock = "realtime") const {
+    return folder
+        .write("capture.yaml",
+               "bodeflow: 1\nrun: {clock: " + clock + ", chunk: 256, duration: " + duration +
+                   "}\nblocks:\n  adc: {block: acquisition.alsa_capture, device: loop, rate: 48 kHz, buffer: 16384, " +
+                   parameters +
+                   "}\n  file: {block: output.csv, file: x.csv}\n  gaps: {block: output.records, file: gaps.jsonl}\n"
+                   "connections:\n  - adc -> file\n  - adc.gaps -> gaps\n")
+        .string();
+  }
+
+  const Folder folder;
+};
+
+/// b0 .. a2 of the section below, at z.
+constexpr double kB[] = {0.02, 0.04, 0.02}, kA[] = {-1.56, 0.64};
+const std::string kSection = "b [ 0.02 0.04 0.02 ] a [ -1.56 0.64 ]";
+
+Complex section(double frequency_hz, double delay) {
+  const Complex w = std::polar(1.0, -2 * std::numbers::pi * frequency_hz / 48e3);
+  return (kB[0] + w * (kB[1] + w * kB[2])) / (1.0 + w * (kA[0] + w * kA[1])) * std::pow(w, delay);
+}
+
+/// How many lines of a response have the truth in their confidence circle.
+int inside(const json& response, double delay) {
+  const auto& arrays = response["arrays"];
+  const auto frequency = arrays["frequency"]["data"].get<std::vector<double>>();
+  int count = 0;
+  for (std::size_t k = 0; k < frequency.size(); ++k) {
+    const auto& g = arrays["response"]["data"][k];
+    count += std::abs(Complex(g[0], g[1]) - section(frequency[k], delay)) <= arrays["confidence_radius"]["data"][k].get<double>();
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("a multisine played and captured identifies the filter and the delay of the loop within the confidence circles") {
+  const Bench bench("delay 37 noise 1e-4 " + kSection);
+  const auto results = bench.measure("sound_card.yaml", {});
+  REQUIRE(results["response"]["arrays"]["frequency"]["data"].size() == 180);
+  CHECK(inside(results["response"], 37) >= 162);  // 95 % of 180, less 3.1 standard deviations
+  CHECK(inside(results["response"], 36) == 0);
+  const auto& device = results["card"]["attributes"];
+  CHECK(device["overruns"] == 0);
+  CHECK(device["underruns"] == 0);
+  CHECK(device["clipped"] == 0);
+  CHECK(device["clock"] == "alsa:loop");
+  CHECK(device["measured_rate"].get<double>() == Approx(48e3).epsilon(1e-3));
+}
+
+TEST_CASE("the round trip is measured by its graph and compensated as measured") {
+  const Bench bench("delay 123 noise 1e-4");
+  const auto delay = bench.measure("sound_card_round_trip.yaml", {})["delay"]["attributes"];
+  const double samples = 48e3 * delay["delay"].get<double>();
+  CHECK(samples == Approx(123).margin(0.01));
+
+  const Bench other("delay 123 noise 1e-4 " + kSection);
+  const auto results = other.measure("sound_card.yaml", {"round_trip=123"});
+  CHECK(inside(results["response"], 0) >= 162);
+  CHECK(results["card"]["attributes"]["round_trip_delay"] == 123);
+}
+
+TEST_CASE("overruns and underruns injected into a measurement are counted exactly and it goes on") {
+  const Bench bench("delay 37 noise 1e-4 overruns [ 9000 20000 41000 ] underruns [ 15000 30000 ] " + kSection);
+  const auto results = bench.measure("sound_card.yaml", {"blocks.card.on_gap=mark"});
+  const auto& device = results["card"]["attributes"];
+  CHECK(device["overruns"] == 3);
+  CHECK(device["underruns"] == 2);
+  CHECK(device["samples"] == 13 * 4800);
+  CHECK(results["card.gaps"]["type"] == "gap");
+  CHECK(results["card.gaps"]["attributes"]["cause"] == "overrun");
+}
+
+TEST_CASE("an overrun of a capture is marked at its place with the samples that are missing") {
+  const Bench bench("ramp 1 overruns [ 6000 12000 ]");
+  const auto results = bench.results({bench.capture("on_gap: mark")});
+  CHECK(results["adc"]["attributes"]["overruns"] == 2);
+
+  std::vector<long> ramp;
+  std::istringstream rows(bench.folder.read("out/x.csv"));
+  std::string row;
+  std::getline(rows, row);
+  while (std::getline(rows, row)) ramp.push_back(std::lround(32768 * std::stod(row.substr(row.find(',') + 1))));
+  REQUIRE(ramp.size() == 24000);
+  std::map<std::size_t, long> jumps;
+  for (std::size_t n = 1; n < ramp.size(); ++n)
+    if (const long step = (ramp[n] - ramp[n - 1] + 32768) % 32768; step != 1) jumps[n] = step - 1;
+
+  std::istringstream lines(bench.folder.read("out/gaps.jsonl"));
+  std::size_t marked = 0;
+  while (std::getline(lines, row)) {
+    const auto gap = json::parse(row)["attributes"];
+    INFO(gap.dump());
+    const auto jump = jumps.find(gap["position"].get<std::size_t>());
+    REQUIRE(jump != jumps.end());
+    CHECK(std::labs(jump->second - gap["missing"].get<long>()) <= 24);  // 0.5 ms: the time that starting takes
+    ++marked;
+  }
+  CHECK(marked == 2);
+  CHECK(jumps.size() == 2);
+}
+
+TEST_CASE("an overrun ends a run that does not mark it: block, place, cause") {
+  const Bench bench("overruns [ 6000 ]");
+  const Ended ended = bench.run({bench.capture("on_gap: end")});
+  CHECK(ended.exit_code == 1);
+  CHECK_THAT(ended.err,
+             Contains("block 'adc': overrun before sample ") && Contains("the samples were not taken in time; raise buffer"));
+  CHECK(json::parse(bench.folder.read("out/result.json"))["status"] == "failed");
+}
+
+TEST_CASE("a device that stops delivering ends the run after its timeout") {
+  const Bench bench("stall 5000");
+  const Ended ended = bench.run({bench.capture("timeout: 200 ms")});
+  CHECK(ended.exit_code == 1);
+  CHECK_THAT(ended.err, Contains("block 'adc': sound device 'loop' (capture) delivered nothing for 0.2 s"));
+}
+
+TEST_CASE("what a sound device can't do is refused with what it can") {
+  const Bench bench("");
+  const auto said = [&](const std::string& parameters) { return bench.run({bench.capture(parameters)}).err; };
+  CHECK_THAT(said("format: s24"), Contains("sound device 'loop' (capture) has no format s24; allowed: s16, s32"));
+  CHECK_THAT(said("channels: 9"), Contains("sound device 'loop' (capture) does not run with 9 channels; allowed: 1 to 4"));
+  CHECK_THAT(said("period: 16384"), Contains("a buffer of 16384 frames with a period of 16384; allowed: at least two periods"));
+  const auto other = [&](const std::string& name, const std::string& value) {
+    return bench.run({bench.capture("format: s16"), "--set", "blocks.adc." + name + "=" + value}).err;
+  };
+  CHECK_THAT(other("rate", "44.1 kHz"),
+             Contains("sound device 'loop' (capture) does not run at 44100 Hz; allowed: rates of its own from 8000 to 96000 Hz"));
+  CHECK_THAT(other("device", "nowhere"),
+             Contains("sound device 'nowhere' (capture) can't be opened: No such file or directory; `arecord "
+                      "-l` lists what there is"));
+}
+
+TEST_CASE("a device is refused in simulated time") {
+  const Bench bench("");
+  const Ended ended = bench.run({bench.capture("format: s16", "0.1 s", "simulated")});
+  CHECK(ended.exit_code == 1);
+  CHECK_THAT(ended.err,
+             Contains("block 'adc': a device goes by real time; run: {clock: simulated} does not. Allowed: realtime, hardware"));
+}
+
+TEST_CASE("a calibration file makes physical values of each channel") {
+  const Bench bench("ramp 1");
+  bench.folder.write("cal.csv", "# bench 3\nchannel, gain, offset, unit, date\nch2, 0.5, 1, A, today\nch1, -2, 0, V, today\n");
+  const auto results = bench.results({bench.capture("channels: 2, format: s16, calibration: cal.csv", "0.05 s")});
+  std::istringstream rows(bench.folder.read("out/x.csv"));
+  std::string row;
+  std::getline(rows, row);
+  CHECK_THAT(row, Contains("ch1 [V]") && Contains("ch2 [A]"));
+  std::getline(rows, row);
+  std::getline(rows, row);
+  double time = 0, first = 0, second = 0;
+  REQUIRE(std::sscanf(row.c_str(), "%lf,%lf,%lf", &time, &first, &second) == 3);
+  CHECK(second == Approx(1 - 0.25 * first).epsilon(1e-12));
+  CHECK(first < 0);
+
+  bench.folder.write("cal.csv", "channel,gain\nch1,1\nch2,0\n");
+  CHECK_THAT(bench.run({bench.capture("channels: 2, calibration: cal.csv")}).err,
+             Contains("cal.csv:3:5: a gain of 0; allowed: any other number"));
+}
+
+TEST_CASE("samples played by a playback block alone all leave the device and limited ones are counted") {
+  const Bench bench("");
+  const auto graph = bench.folder.write(
+      "play.yaml",
+      "bodeflow: 1\nrun: {clock: realtime, chunk: 256, duration: 0.25 s}\nblocks:\n"
+      "  sine: {block: generators.sine, sample_rate: 48 kHz, frequency: 1 kHz, amplitude: 2.2, unit: V}\n"
+      "  dac: {block: acquisition.alsa_playback, device: loop, buffer: 16384, scale: 2, unit: V, format: s16}\n"
+      "connections:\n  - sine -> dac\n");
+  const auto device = bench.results({graph.string()})["dac"]["attributes"];
+  CHECK(device["samples"] == 12000);
+  CHECK(device["underruns"] == 0);
+  CHECK(device["lead"] == 16384 - 256);
+  CHECK(device["clipped"].get<int>() > 3000);  // a third of a sine is above 2 / 2.2 of its peak
+  CHECK_THAT(bench.run({graph.string(), "--set", "blocks.sine.unit=A"}).err,
+             Contains("channel 1 of the input is in A, its scale in V"));
+}
+
+TEST_CASE("a lead that the round trip outlasts is refused, and lines that the coupling turns are warned of") {
+  const Bench bench("");
+  CHECK_THAT(bench.run({kGraphs + "sound_card.yaml", "--set", "device=loop", "--set", "round_trip=3000"}).err,
+             Contains("the playback would run dry; raise lead to 3512 or more"));
+  CHECK_THAT(run_bodeflow({"check", kGraphs + "sound_card.yaml", "--set", "ac_corner=12 Hz"}).err,
+             Contains("the line at 100 Hz lies below ten times the corner of the AC coupling, 12 Hz"));
+}
+
+TEST_CASE("Ctrl-C ends a run on a device at once and keeps what it gave") {
+  const Bench bench("ramp 1");
+  const std::string graph = bench.capture("format: s16", "60 s");
+  const auto ended = bodeflow::test::run_program(
+      {"timeout", "--preserve-status", "-s", "INT", "0.6", BODEFLOW_BUILD_DIR "/bin/bodeflow", "run", graph, "--out", "out"},
+      bench.folder.path(), {"ALSA_CONFIG_PATH=" + (bench.folder.path() / "asound.conf").string()});
+  CHECK(ended.exit_code == 130);
+  CHECK(bench.folder.read("out/x.csv").size() > 1000);
+}

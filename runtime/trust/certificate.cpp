@@ -205,6 +205,8 @@ std::string fingerprint(const X509& certificate) {
 Time valid_from(const X509& certificate) { return time_of(X509_get0_notBefore(&certificate)); }
 Time valid_until(const X509& certificate) { return time_of(X509_get0_notAfter(&certificate)); }
 
+Time valid_from(const X509_CRL& revocations) { return time_of(X509_CRL_get0_lastUpdate(&revocations)); }
+
 bool is_revoked(X509& certificate, X509_CRL& revocations) {
   X509_REVOKED* entry = nullptr;
   return X509_CRL_get0_by_cert(&revocations, &entry, &certificate) == 1;

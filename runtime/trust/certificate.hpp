@@ -41,6 +41,7 @@ std::string subject_part(const X509& certificate, int nid);
 std::string fingerprint(const X509& certificate);
 Time valid_from(const X509& certificate);
 Time valid_until(const X509& certificate);
+Time valid_from(const X509_CRL& revocations);
 bool is_revoked(X509& certificate, X509_CRL& revocations);
 /// The number of a list: a later one has a higher one.
 long number(const X509_CRL& revocations);

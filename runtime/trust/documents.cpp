@@ -1,7 +1,6 @@
 #include "trust/documents.hpp"
 
 #include <fmt/format.h>
-#include <openssl/err.h>
 
 namespace bodeflow::trust {
 namespace {
@@ -92,14 +91,16 @@ Expected<std::string> signed_text(const std::string& text, X509& authority, EVP_
   return text_of(*out);
 }
 
-Expected<std::string> verified_text(const std::string& signed_text, X509& authority) {
+Expected<std::string> verified_text(const std::string& signed_text, X509& authority, Time now) {
   BIO* content = nullptr;
   const Pkcs7 signature(SMIME_read_PKCS7(reading(signed_text).get(), &content));
   const Bio in(content), out = memory();
   if (!signature || !in) return tl::unexpected(openssl_failure("it is no signed document"));
   const Store store(X509_STORE_new());
-  if (!store || X509_STORE_add_cert(store.get(), &authority) != 1 ||
-      PKCS7_verify(signature.get(), nullptr, store.get(), in.get(), out.get(), PKCS7_TEXT) != 1)
+  if (!store || X509_STORE_add_cert(store.get(), &authority) != 1)
+    return tl::unexpected(openssl_failure("the authority can't be used"));
+  X509_VERIFY_PARAM_set_time(X509_STORE_get0_param(store.get()), std::chrono::system_clock::to_time_t(now));
+  if (PKCS7_verify(signature.get(), nullptr, store.get(), in.get(), out.get(), PKCS7_TEXT) != 1)
     return tl::unexpected(openssl_failure("it was changed, or the lab's authority did not sign it"));
   return text_of(*out);
 }

@@ -23,7 +23,8 @@ std::vector<std::string> permitted_topics(const std::string& permissions_text);
 
 /// The text, signed by the authority as S/MIME with the text in clear.
 Expected<std::string> signed_text(const std::string& text, X509& authority, EVP_PKEY& authority_key);
-/// The text that was signed. Error: it is not signed, was changed, or the signature is another's than the authority's.
-Expected<std::string> verified_text(const std::string& signed_text, X509& authority);
+/// The text that was signed. Error: it is not signed, was changed, or the signature is another's than the authority's, or the
+/// authority's certificate is not valid at `now`.
+Expected<std::string> verified_text(const std::string& signed_text, X509& authority, Time now);
 
 }  // namespace bodeflow::trust

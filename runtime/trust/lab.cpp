@@ -91,7 +91,6 @@ Expected<void> check(const NewHost& host) {
   for (const std::string& topic : host.topics)
     if (const std::string problem = topic_problem(topic); !problem.empty())
       return tl::unexpected(fmt::format("topic '{}': {}", topic, problem));
-  if (fs::exists(host.bundle)) return tl::unexpected(fmt::format("'{}' exists already", host.bundle.string()));
   return {};
 }
 
@@ -211,6 +210,7 @@ Expected<Host> add(const fs::path& folder, const NewHost& host, Time now) {
   const auto revocations = revocations_in(files.revocations);
   if (!revocations) return tl::unexpected(revocations.error());
   if (auto free = need_free_name(files, host, **revocations, now); !free) return tl::unexpected(free.error());
+  if (fs::exists(host.bundle)) return tl::unexpected(fmt::format("'{}' exists already", host.bundle.string()));
 
   const auto bundle = bundle_of(files, host, *authority, now);
   if (!bundle) return tl::unexpected(bundle.error());

@@ -40,10 +40,13 @@ Expected<void> check_present(const Files& files, const std::string& host) {
   return {};
 }
 
+tl::unexpected<std::string> too_early(const fs::path& path, Time from, Time now) {
+  return problem_of(path,
+                    fmt::format("valid from {}, and it is {}: is this machine's clock right?", utc_text(from), utc_text(now)));
+}
+
 Expected<void> check_time(const fs::path& path, const X509& certificate, Time now) {
-  if (now < valid_from(certificate))
-    return problem_of(path, fmt::format("valid from {}, and it is {}: is this machine's clock right?",
-                                        utc_text(valid_from(certificate)), utc_text(now)));
+  if (now < valid_from(certificate)) return too_early(path, valid_from(certificate), now);
   if (now >= valid_until(certificate)) return problem_of(path, "expired on " + utc_text(valid_until(certificate)));
   return {};
 }
@@ -61,21 +64,22 @@ Expected<void> check_key(const fs::path& path, X509& certificate) {
   return {};
 }
 
-Expected<void> check_revocations(const fs::path& path, X509& authority, X509& certificate, const std::string& host) {
+Expected<void> check_revocations(const fs::path& path, X509& authority, X509& certificate, const std::string& host, Time now) {
   const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
   const auto list = read_revocations(*text);
   if (!list) return problem_of(path, list.error());
   if (X509_CRL_verify(list->get(), X509_get0_pubkey(&authority)) != 1)
     return problem_of(path, openssl_failure("it is of another authority than authority.pem"));
+  if (now < valid_from(**list)) return too_early(path, valid_from(**list), now);
   if (is_revoked(certificate, **list)) return problem_of(path, fmt::format("the certificate of host '{}' is revoked", host));
   return {};
 }
 
-Expected<std::string> check_document(const fs::path& path, X509& authority) {
+Expected<std::string> check_document(const fs::path& path, X509& authority, Time now) {
   const auto text = read_file(path);
   if (!text) return text;
-  const auto content = verified_text(*text, authority);
+  const auto content = verified_text(*text, authority, now);
   if (!content) return problem_of(path, content.error());
   return content;
 }
@@ -89,10 +93,10 @@ Expected<void> check_certificate(const Files& files, const std::string& host, X5
   return check_time(files.authority, authority, now).and_then([&] { return check_time(path, certificate, now); });
 }
 
-Expected<void> check_documents(const Files& files, const std::string& host, X509& authority) {
-  const auto governance = check_document(files.governance, authority);
+Expected<void> check_documents(const Files& files, const std::string& host, X509& authority, Time now) {
+  const auto governance = check_document(files.governance, authority, now);
   if (!governance) return tl::unexpected(governance.error());
-  const auto permissions = check_document(files.permissions(host), authority);
+  const auto permissions = check_document(files.permissions(host), authority, now);
   if (!permissions) return tl::unexpected(permissions.error());
   const std::string subject = fmt::format("CN={},O={}", host, subject_part(authority, NID_organizationName));
   if (permissions->find("<subject_name>" + subject + "</subject_name>") == std::string::npos)
@@ -122,8 +126,8 @@ Expected<std::optional<transport::Security>> security_of(const fs::path& folder,
   if (!certificate) return tl::unexpected(certificate.error());
   const auto right = check_certificate(files, host, **authority, **certificate, now)
                          .and_then([&] { return check_key(files.key(host), **certificate); })
-                         .and_then([&] { return check_revocations(files.revocations, **authority, **certificate, host); })
-                         .and_then([&] { return check_documents(files, host, **authority); });
+                         .and_then([&] { return check_revocations(files.revocations, **authority, **certificate, host, now); })
+                         .and_then([&] { return check_documents(files, host, **authority, now); });
   if (!right) return tl::unexpected(right.error());
   return transport::Security{files.authority,  files.certificate(host), files.key(host),
                              files.governance, files.permissions(host), files.revocations};

@@ -17,8 +17,7 @@ void Interpolate::describe(Describe& d) {
   d.doc(
       "y[factor m + p] = sum_j h[factor j + p] x[m - j]: zeros between the samples, then the low pass of filters.decimate times "
       "factor. It passes up to pass_band of the old Nyquist frequency and stops the images from there on. The delay is a whole "
-      "number of "
-      "input samples, K = 26 for 80 dB and 0.8. For what a converter does use filters.hold.");
+      "number of input samples, K = 26 for 80 dB and 0.8. For what a converter does use filters.hold.");
   d.reference("J. F. Kaiser, Nonrecursive digital filter design using the I0-sinh window function, 1974");
   d.required<std::int64_t>("factor").range(1, 1 << 16).doc("output samples for each input sample");
   d.parameter("pass_band", 0.8)

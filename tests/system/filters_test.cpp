@@ -64,6 +64,10 @@ TEST_CASE("describe tells magnitude, phase and impulse response of a filter as i
   const double c = std::tan(0.1 * 3.14159265358979323846);
   CHECK(h[0] == Approx(c * c / (1 + std::sqrt(2) * c + c * c)).epsilon(1e-12));
   CHECK(record["attributes"]["sample_rate"] == 1000);
+  const auto decimation = run_bodeflow({"describe", "filters.decimate", "--set", "factor=4", "--rate", "10 kHz"});
+  CHECK(decimation.exit_code == 0);
+  CHECK(decimation.err.empty());
+  CHECK_THAT(decimation.out, Contains("decimation by 4, at 10 kHz") && Contains("first 16 of 209 samples"));
 }
 
 TEST_CASE("describe refuses settings that a filter cannot have, and blocks that are none") {
@@ -73,5 +77,7 @@ TEST_CASE("describe refuses settings that a filter cannot have, and blocks that 
              Contains("edges: 600 Hz; allowed: above 0 and below the Nyquist frequency 500 Hz"));
   CHECK_THAT(err({"describe", "filters.iir", "--set", "egdes=1", "--rate", "1 kHz"}), Contains("has no parameter 'egdes'"));
   CHECK_THAT(err({"describe", "filters.gain", "--rate", "1 kHz"}), Contains("no block that tells its response"));
+  CHECK_THAT(err({"describe", "filters.decimate", "--set", "factor=4", "--set", "anti_alias=false", "--rate", "1 kHz"}),
+             Contains("filters.decimate filters nothing with these settings"));
   CHECK_THAT(err({"describe", "filters.iir", "--set", "edges=1", "--rate", "-1"}), Contains("expected a frequency above 0"));
 }

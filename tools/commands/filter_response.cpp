@@ -7,6 +7,7 @@
 #include <bodeflow/units.hpp>
 #include <cmath>
 #include <complex>
+#include <cstdlib>
 #include <numbers>
 
 #include "commands/run_graph.hpp"
@@ -59,11 +60,20 @@ std::string overrides_of(const BlockDescription& block, const std::vector<std::s
   return "";
 }
 
-std::string graph_text(const BlockDescription& block, double rate_hz) {
+/// Input samples until the block fires: a decimator takes `factor` of them.
+double samples_of_a_firing(const std::vector<std::pair<std::string, std::string>>& overrides) {
+  double samples = 1.0;
+  for (const auto& [name, value] : overrides) {
+    if (name == "blocks.filter.factor") samples = std::max(1.0, std::atof(value.c_str()));
+  }
+  return samples;
+}
+
+std::string graph_text(const BlockDescription& block, double rate_hz, double samples) {
   return fmt::format(
       "bodeflow: 1\ntitle: {}\nrun: {{clock: simulated, duration: {} s}}\nblocks:\n"
       "  source: {{block: generators.step, sample_rate: {} Hz}}\n  filter: {{block: {}}}\nconnections:\n  - source -> filter\n",
-      block.id, 1.0 / rate_hz, rate_hz, block.id);
+      block.id, samples / rate_hz, rate_hz, block.id);
 }
 
 std::complex<double> complex_at(const Json& data, std::size_t i) {
@@ -136,7 +146,8 @@ int print_filter_response(const Session& session, Registry& registry, const Bloc
   graph::LoadOptions load;
   if (const std::string wrong = overrides_of(block, configured.sets, load.overrides); !wrong.empty())
     return refuse(wrong, kUsage);
-  const auto graph = graph::load_text(graph_text(block, *rate), "describe.yaml", load, registry);
+  const auto graph =
+      graph::load_text(graph_text(block, *rate, samples_of_a_firing(load.overrides)), "describe.yaml", load, registry);
   if (!graph) {
     for (const auto& problem : graph.error()) say_error(problem.text);
     return kRejected;
@@ -152,7 +163,8 @@ int print_filter_response(const Session& session, Registry& registry, const Bloc
   options.own_graph = true;
   const RanGraph ran = run_graph(*graph, registry, options);
   if (ran.exit_code != kDone) return ran.exit_code;
-  const Json& record = ran.result["results"]["filter"];
+  const Json record = ran.result["results"].value("filter", Json());
+  if (record.is_null()) return refuse(fmt::format("{} filters nothing with these settings", block.id), kUsage);
   configured.json ? print_json(record) : print_record(record, configured.rate);
   return kDone;
 }

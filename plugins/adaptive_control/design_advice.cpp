@@ -91,7 +91,15 @@ DesignAdvice advice_before(const RstStructure& structure, const DesiredResponse&
   structure_advice(c, structure, static_cast<int>(desired.a_o.size()) - 1);
   frequency_advice(c, structure, plant);
   demand_advice(c, structure, desired, plant);
-  c.judge(plant.forgetting >= 0.98, "forgetting " + text_of(plant.forgetting),
+  return c.take();
+}
+
+DesignAdvice forgetting_advice(double forgetting) {
+  Collected c;
+  const std::string remembered =
+      forgetting < 1.0 ? "about " + text_of(std::round(2.0 / (1.0 - forgetting))) + " samples count, for a plant that changes"
+                       : "all samples count alike, for a plant that stays; 0.98 to 0.99 follows one that changes";
+  c.judge(forgetting >= 0.98, "forgetting " + text_of(forgetting) + ": " + remembered,
           "below 0.98 the estimates forget faster than the filters respond");
   return c.take();
 }

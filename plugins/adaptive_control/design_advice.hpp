@@ -16,7 +16,6 @@ struct PlantKnowledge {
   std::optional<double> omega_180;   ///< where its phase is -180 degrees [rad/s]
   std::optional<double> delay_s;     ///< true delay
   std::optional<double> anti_alias;  ///< bandwidth of the filter before the sampler [rad/s]
-  double forgetting = 1.0;
 };
 
 /// Advice on the choice of design parameters.
@@ -28,6 +27,9 @@ struct DesignAdvice {
 /// The list of section 7.4 of Kallen 1992, step by step: controller structure, frequencies of fitting over about a decade up to
 /// omega_-180, bandwidth and degree of A_m, speed of A_o beside it, omega h within 0.2 to 0.6, the anti-alias filter as a delay.
 DesignAdvice advice_before(const RstStructure& structure, const DesiredResponse& desired, const PlantKnowledge& plant);
+
+/// What a forgetting factor means for the estimates; a warning below 0.98.
+DesignAdvice forgetting_advice(double forgetting);
 
 /// Demands that are too high, as a design shows them: a controller pole on the negative real axis (the control signal rings),
 /// S(1) / T(1) off by more than 5 %, M_s above 2.5. `quality` where the plant is known.

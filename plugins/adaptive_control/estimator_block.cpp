@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "block_settings.hpp"
+#include "design_advice.hpp"
 #include "numbers_in_text.hpp"
 #include "plan_record.hpp"
 #include "records/response.hpp"
@@ -110,11 +111,15 @@ void Estimator::resolve(Facts& f) {
   g.length = known.length;
   g.clock = known.clock;
   g.notes["fit.frequencies"] = settings_.omega;
-  output_unit_ = f.in(y).unit;
-  input_unit_ = f.in(u).unit;
   if (settings_.point.method == Method::instrumental && f.in(y).known && f.in(u).known && !f.in(reference).known) {
     fail("instrumental variables need the command at 'reference'");
   }
+}
+
+void Estimator::advise(const Facts&, Advice& a) {
+  const DesignAdvice advice = forgetting_advice(settings_.point.forgetting);
+  for (const std::string& text : advice.notes) a.tell(text);
+  for (const std::string& text : advice.warnings) a.warn(text);
 }
 
 void Estimator::activate(const Activation& a) {

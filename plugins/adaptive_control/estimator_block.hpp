@@ -18,6 +18,7 @@ class Estimator final : public Block {
   static void describe(Describe& d);
   void configure(const Parameters& p) override;
   void resolve(Facts& f) override;
+  void advise(const Facts& f, Advice& a) override;
   void activate(const Activation& a) override;
   void process(Io& io) override;
   void receive(int port, const RecordView& record, Io& io) override;
@@ -27,8 +28,7 @@ class Estimator final : public Block {
  private:
   BankSettings settings_, planned_;
   std::optional<EstimatorBank> bank_;
-  double sample_time_ = 1.0, u_before_ = 0.0;
-  std::string output_unit_, input_unit_;
+  double sample_time_ = 1.0;
 };
 
 }  // namespace bodeflow::adaptive_control

@@ -9,6 +9,8 @@
 namespace bodeflow::adaptive_control {
 namespace {
 
+constexpr const char* kNoCoefficients = "neither r, s and t nor a stream at 'coefficients' is given";
+
 int read_polynomial(const Parameters& p, const char* name, Coefficients& to) {
   const std::vector<double>& values = p.numbers(name);
   if (values.empty() || values.size() > to.size()) {
@@ -110,6 +112,10 @@ void RstBlock::resolve(Facts& f) {
   out.notes[kLimitsNote] = {least_, most_};
 }
 
+void RstBlock::advise(const Facts& f, Advice& a) {
+  if (!fixed_ && f.in(coefficients).channels == 0) a.warn(kNoCoefficients);
+}
+
 void RstBlock::activate(const Activation&) { reset(); }
 
 void RstBlock::reset() {
@@ -121,7 +127,7 @@ void RstBlock::process(Io& io) {
   const auto command = io.read(setpoint), measured = io.read(y);
   const auto out = io.write(u);
   const bool streamed = io.connected(coefficients);
-  if (!streamed && !fixed_) fail("neither r, s and t nor a stream at 'coefficients' is given");
+  if (!streamed && !fixed_) fail(kNoCoefficients);
   require_finite(command, "setpoint", io.position());
   require_finite(measured, "y", io.position());
   for (std::size_t n = 0; n < io.count(); ++n) {

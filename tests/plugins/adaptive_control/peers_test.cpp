@@ -146,17 +146,22 @@ TEST_CASE("advice names frequencies, demands and sampling that do not go togethe
   bad.desired = {ac::bessel(3, 2.0), ac::bessel(2, 0.1), 0.0};
   plant.delay_s = 2.0;
   plant.anti_alias = 5.0;
-  plant.forgetting = 0.9;
   const std::string text = all(ac::advice_before(bad.structure, bad.desired, plant).warnings);
-  for (const char* expected :
-       {"integral action: without (z - 1) in R", "degrees of S and T are 1 and 2: below that of R",
-        "frequencies of fitting from 0.01 to 2 rad/s: spread them over about a decade",
-        "highest frequency of fitting is 3.15457 times omega_-180", "0.2 to 0.6 is usual: sample faster",
-        "bandwidth over omega_-180 is", "degree of A_m is 3, that of the plant 5", "delay of G_m 0 s, of the plant 2 s",
-        "time constant of A_o is", "anti-alias filter of 5 rad/s", "forgetting 0.9"}) {
+  for (const char* expected : {"integral action: without (z - 1) in R", "degrees of S and T are 1 and 2: below that of R",
+                               "frequencies of fitting from 0.01 to 2 rad/s: spread them over about a decade",
+                               "highest frequency of fitting is 3.15457 times omega_-180", "0.2 to 0.6 is usual: sample faster",
+                               "bandwidth over omega_-180 is", "degree of A_m is 3, that of the plant 5",
+                               "delay of G_m 0 s, of the plant 2 s", "time constant of A_o is", "anti-alias filter of 5 rad/s"}) {
     INFO(text);
     CHECK(text.find(expected) != std::string::npos);
   }
+}
+
+TEST_CASE("advice tells what a forgetting factor remembers") {
+  CHECK(all(ac::forgetting_advice(1.0).notes).find("all samples count alike") != std::string::npos);
+  CHECK(all(ac::forgetting_advice(0.99).notes).find("forgetting 0.99: about 200 samples count") != std::string::npos);
+  CHECK(ac::forgetting_advice(0.99).warnings.empty());
+  CHECK(all(ac::forgetting_advice(0.9).warnings).find("below 0.98 the estimates forget faster") != std::string::npos);
 }
 
 TEST_CASE("advice names demands that are too high: ringing, S(1) over T(1), fragile loops") {

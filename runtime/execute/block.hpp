@@ -7,6 +7,7 @@
 
 #include "execute/inbox.hpp"
 #include "execute/lane.hpp"
+#include "execute/remote_end.hpp"
 #include "graph/graph.hpp"
 
 namespace bodeflow::execute {
@@ -91,7 +92,8 @@ struct alignas(64) BlockRun {
   std::vector<bf_message> messages;        ///< of the coming call
   std::vector<SharedRecord> held;          ///< and their records
   std::string fault_text;
-  int worker = -1;  ///< asynchronous: index of its worker
+  RemoteEnd* remote = nullptr;  ///< one end of a link to another process
+  int worker = -1;              ///< asynchronous: index of its worker
 
   double timed_s = 0.0;  ///< of the firings that were timed
   std::int64_t timed_firings = 0;

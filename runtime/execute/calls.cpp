@@ -49,12 +49,15 @@ bool PartitionRun::run_call(Op& op, const Chunk& chunk) {
     end = std::min(end, block.end.load(std::memory_order_relaxed));
   }
   const std::int64_t count = end - block.position;
-  if (count <= 0) return true;
-  begin_chunk(block, chunk);
-  const bool limited = run->options.call_limit > 0;
-  const bool go_on = chunk.timed ? advance_timed(block, count, limited, lane) : advance(block, count, limited, lane);
-  rewind(block);
-  return go_on;
+  bool go_on = true;
+  if (count > 0) {
+    begin_chunk(block, chunk);
+    const bool limited = run->options.call_limit > 0;
+    go_on = chunk.timed ? advance_timed(block, count, limited, lane) : advance(block, count, limited, lane);
+    rewind(block);
+  }
+  if (block.remote == nullptr || !go_on || block.position < block.end.load(std::memory_order_relaxed)) return go_on;
+  return block.remote->ended(block, lane);
 }
 
 bool PartitionRun::run_cluster(Op& op, const Chunk& chunk) {

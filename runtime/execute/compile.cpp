@@ -82,6 +82,8 @@ tl::expected<void, std::string> add_block(Run& run, int index, Instance& instanc
   block.index = index;
   block.run = &run;
   block.control = &run.control;
+  if (const auto remote = run.options.remote_ends.find(index); remote != run.options.remote_ends.end())
+    block.remote = remote->second;
   block.instance = &instance;
   block.call = instance.c().process;
   block.self = instance.c().self;
@@ -248,7 +250,7 @@ void mark_plain(Run& run) {
       const bool alone = op.dependencies.empty() && op.recorded.empty() && !op.followed;
       if (op.kind != plan::Step::Kind::call || !alone || run.options.call_limit > 0) continue;
       BlockRun& block = *op.block;
-      if (!block.has_streams() || block.takes_messages || block.rotates) continue;
+      if (!block.has_streams() || block.takes_messages || block.rotates || block.remote != nullptr) continue;
       rewind(block);
       op.plain = &block;
     }

@@ -175,6 +175,7 @@ Horizon horizon_of(BlockRun& block, const Origin& origin, const Chunk& chunk) {
     } else {
       horizon = {from.position >= end, time_of(from.position, from.rate)};
     }
+    if (from.remote != nullptr && !from.remote->silent()) horizon.endless = false;
   } else {
     horizon = origin.remote ? block.inbox.announced(origin.edge) : from.horizon;
   }
@@ -234,7 +235,7 @@ bool take_turn(BlockRun& block, const Chunk& chunk, Lane& lane) {
   }
   block.horizon = horizon;
   announce(block);
-  return true;
+  return block.remote == nullptr || block.remote->reached(block, horizon, lane);
 }
 
 bool take_rest(BlockRun& block, const Time& end, Lane& lane) {

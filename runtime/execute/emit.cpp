@@ -39,16 +39,16 @@ std::string fault_of(const BlockRun& block, std::uint32_t port, const bf_record*
   return "";
 }
 
-void send(BlockRun& block, Route& route, const SharedRecord& record, const Time& made) {
+void send(BlockRun& block, Route& route, const SharedRecord& record, const Time& effect, double made_s) {
   BlockRun& to = block.run->block(route.to);
   Entry entry;
-  entry.time = later(made, route.latency);
+  entry.time = later(effect, route.latency);
   entry.due = to.has_streams() ? first_firing(entry.time, to.rate) : 0;
   entry.edge = route.edge;
   entry.sequence = route.sequence++;
   entry.port = route.port;
   entry.record = record;
-  entry.made_s = seconds(made);
+  entry.made_s = made_s;
   if (route.remote)
     to.inbox.send(std::move(entry));
   else
@@ -67,7 +67,7 @@ void emit_checked(BlockRun& block, std::uint32_t port, const bf_record* sent, st
   const Time made = block.has_streams() ? time_of(block.position + static_cast<std::int64_t>(offset), block.rate) : block.now;
   const graph::End from{block.index, static_cast<int>(port)};
   if (auto kept = run.sink->record(from, record, seconds(made)); !kept) run.control.fail(-1, kept.error());
-  for (Route& route : block.routes[port]) send(block, route, record, made);
+  for (Route& route : block.routes[port]) send(block, route, record, made, seconds(made));
 }
 
 }  // namespace
@@ -79,6 +79,13 @@ void emit(bf_process* process, std::uint32_t port, bf_record* record, std::uint6
   } catch (const std::exception& e) {
     block.run->control.fail(block.index, e.what());
   }
+}
+
+std::string forward(BlockRun& block, std::uint32_t port, const SharedRecord& record, const Time& effect, double made_s) {
+  std::string fault = fault_of(block, port, record.c(), 0);
+  if (!fault.empty()) return fault;
+  for (Route& route : block.routes[port]) send(block, route, record, effect, made_s);
+  return {};
 }
 
 }  // namespace bodeflow::execute

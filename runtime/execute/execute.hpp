@@ -2,12 +2,15 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "plan/plan.hpp"
 
 namespace bodeflow::execute {
+
+class RemoteEnd;
 
 /// Takes what a run keeps. Calls about one port come from one thread at a time; different ports may come from different threads.
 class Sink {
@@ -38,6 +41,8 @@ struct Options {
   const std::atomic<bool>* stop = nullptr;        ///< set: end now, as partial
   std::function<void(const Progress&)> progress;  ///< called a few times a second from a thread of its own
   bool metrics = true;                            ///< time and calls of each block
+  std::map<int, RemoteEnd*> remote_ends;          ///< by block: ends of links to other processes
+  Rate least_end;                                 ///< seconds; when the run ends on other hosts at the earliest
 };
 
 /// A record of an earlier phase for a message input, delivered at time zero.

@@ -19,6 +19,7 @@ void finish_run(Run& run) {
   for (const int index : run.plan->order) {
     BlockRun& block = run.block(index);
     if (!block.has_streams() && !take_rest(block, end, run.finisher)) return;
+    if (block.remote != nullptr && !block.remote->rested(block, run.finisher)) return;
   }
   for (const int index : run.plan->order) {
     BlockRun& block = run.block(index);

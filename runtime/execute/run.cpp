@@ -15,10 +15,10 @@ bool Run::stop_wanted() {
 }
 
 Time Run::end_time() const {
-  Time latest;
+  Time latest = multiple_of(1, options.least_end);
   for (const auto& block : blocks) {
     const std::int64_t end = block->end.load(std::memory_order_relaxed);
-    if (!block->has_streams() || end == kNever) continue;
+    if (!block->has_streams() || end == kNever || block->remote != nullptr) continue;
     const Time time = time_of(end, block->rate);
     if (latest < time) latest = time;
   }

@@ -23,6 +23,16 @@ struct Division {
   std::vector<int> starts{0};    ///< index of the first component of each partition
 };
 
+/// Samples of the fastest stream in one period of the phase.
+std::int64_t most_samples(const Facts& facts) {
+  std::int64_t most = 1;
+  for (const Facts::Block& block : facts.blocks) {
+    for (const Flow& flow : block.input_flows) most = std::max(most, block.repetitions * flow.samples);
+    for (const Flow& flow : block.output_flows) most = std::max(most, block.repetitions * flow.samples);
+  }
+  return most;
+}
+
 class Planner {
  public:
   Planner(const graph::Phase& phase, const Facts& facts, const PlanOptions& options)
@@ -51,29 +61,9 @@ class Planner {
     return cost;
   }
 
-  /// Samples of the fastest stream in one period of the phase.
-  std::int64_t most_samples() const {
-    std::int64_t most = 1;
-    for (const Facts::Block& block : facts_.blocks) {
-      for (const Flow& flow : block.input_flows) most = std::max(most, block.repetitions * flow.samples);
-      for (const Flow& flow : block.output_flows) most = std::max(most, block.repetitions * flow.samples);
-    }
-    return most;
-  }
-
-  /// Periods in a chunk so that `threads` chunks, one a thread, are within the latency budget; 0: not even one.
-  std::int64_t repetitions_for(int threads) const {
-    if (facts_.period.num == 0) return 1;
-    const std::int64_t by_chunk = std::max<std::int64_t>(1, options_.chunk / most_samples());
-    if (!options_.latency_s) return by_chunk;
-    const Rate budget = Rate::from_hz(*options_.latency_s);
-    const Wide by_latency = floor_divide(Wide{budget.num} * facts_.period.den, Wide{budget.den} * facts_.period.num * threads);
-    return static_cast<std::int64_t>(std::min<Wide>(by_chunk, by_latency));
-  }
-
   /// Chooses chunk and threads: as many threads as asked for, as long as each has enough to do.
   tl::expected<void, Problems> divide() {
-    if (repetitions_for(1) < 1) {
+    if (periods_in_chunk(facts_, options_, 1) < 1) {
       return tl::unexpected(Problems{{phase_.place, "run.latency " + seconds_text(*options_.latency_s) +
                                                         " is shorter than the common period of all sample rates, " +
                                                         seconds_text(facts_.period.hz())}});
@@ -86,7 +76,7 @@ class Planner {
     }
     const int most = std::max(1, std::min(options_.threads, static_cast<int>(components_.size())));
     for (int threads = most; threads >= 1; --threads) {
-      const std::int64_t repetitions = repetitions_for(threads);
+      const std::int64_t repetitions = periods_in_chunk(facts_, options_, threads);
       if (repetitions < 1) continue;
       const double least = threads == 1 ? 0.0 : kLeastWork_ns / static_cast<double>(repetitions);
       const std::vector<int> starts = cut(costs, threads, least);
@@ -218,6 +208,16 @@ class Planner {
 };
 
 }  // namespace
+
+std::int64_t periods_in_chunk(const Facts& facts, const PlanOptions& options, int threads) {
+  if (facts.period.num == 0) return 1;
+  if (options.periods) return *options.periods;
+  const std::int64_t by_chunk = std::max<std::int64_t>(1, options.chunk / most_samples(facts));
+  if (!options.latency_s) return by_chunk;
+  const Rate budget = Rate::from_hz(*options.latency_s);
+  const Wide by_latency = floor_divide(Wide{budget.num} * facts.period.den, Wide{budget.den} * facts.period.num * threads);
+  return static_cast<std::int64_t>(std::min<Wide>(by_chunk, by_latency));
+}
 
 tl::expected<Plan, Problems> make_plan(const graph::Phase& phase, const Facts& facts, const PlanOptions& options) {
   return Planner(phase, facts, options).run();

@@ -113,9 +113,13 @@ struct Plan {
 struct PlanOptions {
   std::int64_t chunk = 1024;
   std::optional<double> latency_s;
+  std::optional<std::int64_t> periods;  ///< of the phase in a chunk, in place of `chunk` and `latency_s`
   int threads = 1;
   std::vector<graph::End> kept;  ///< stream outputs that are recorded: their buffers live to the end of the chunk
 };
+
+/// Periods of the phase in a chunk, so that `threads` chunks, one a thread, are within the latency budget; 0: not even one.
+std::int64_t periods_in_chunk(const Facts& facts, const PlanOptions& options, int threads);
 
 /// The plan of a phase; a value: the same input gives the same plan. Errors name deadlocked loops with their cycle and missing
 /// samples.

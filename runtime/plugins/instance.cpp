@@ -79,6 +79,15 @@ tl::expected<std::unique_ptr<Instance>, std::string> Instance::make(Registry& re
   return instance;
 }
 
+std::unique_ptr<Instance> Instance::own(std::string name, const BlockDescription& type,
+                                        const std::function<bf_block(const bf_host&)>& make) {
+  std::unique_ptr<Instance> instance(new Instance);
+  instance->state_ = std::make_unique<State>(std::move(name), nullptr, nullptr);
+  instance->state_->type = &type;
+  instance->state_->block = make(instance->state_->host.c());
+  return instance;
+}
+
 const std::string& Instance::name() const { return state_->block_name; }
 const BlockDescription& Instance::type() const { return *state_->type; }
 const bf_block& Instance::c() const { return state_->block; }

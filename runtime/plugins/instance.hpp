@@ -59,6 +59,9 @@ class Instance {
  public:
   static tl::expected<std::unique_ptr<Instance>, std::string> make(Registry& registry, const std::string& id, std::string name,
                                                                    std::shared_ptr<const HostServices> services);
+  /// A block of the engine's own; `block` is destroyed with the instance. `type` outlives it.
+  static std::unique_ptr<Instance> own(std::string name, const BlockDescription& type,
+                                       const std::function<bf_block(const bf_host&)>& make);
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;

@@ -6,11 +6,11 @@
 #include <cstring>
 
 #include "catch.hpp"
+#include "collector.hpp"
 
 namespace bodeflow::test {
-namespace {
 
-Registry& registry() {
+Registry& test_registry() {
   static Registry made([] {
     Registry::Options options;
     options.path = {BODEFLOW_FIXTURES};
@@ -20,47 +20,7 @@ Registry& registry() {
   return made;
 }
 
-/// Keeps everything. Ports come from different threads.
-class Collector final : public execute::Sink {
- public:
-  Collector(const Bench& bench, Result& result) : bench_(bench), result_(result) {
-    for (const auto& recorded : bench.phase.recorded) names_.push_back(name(recorded.port, BF_STREAM));
-  }
-
-  tl::expected<void, std::string> samples(int recorded, const void* const* channels, std::uint64_t count) override {
-    const std::lock_guard lock(mutex_);
-    const std::string& port = names_[static_cast<std::size_t>(recorded)];
-    auto& kept = result_.streams[port];
-    for (std::size_t c = 0; c < kept.size(); ++c) {
-      const auto* from = static_cast<const double*>(channels[c]);
-      kept[c].insert(kept[c].end(), from, from + count);
-    }
-    return bench_.on_samples ? bench_.on_samples(port) : tl::expected<void, std::string>{};
-  }
-
-  tl::expected<void, std::string> record(graph::End from, const SharedRecord& record, double time_s) override {
-    const std::lock_guard lock(mutex_);
-    result_.records[name(from, BF_MESSAGE)].push_back({{record.bytes(), record.bytes() + record.size()}, time_s});
-    return {};
-  }
-
-  void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position) override {
-    const std::lock_guard lock(mutex_);
-    const graph::Block& b = bench_.phase.blocks[static_cast<std::size_t>(block)];
-    result_.changes[b.name].push_back({b.name, b.type->parameters[static_cast<std::size_t>(parameter)].name, value, position});
-  }
-
- private:
-  std::string name(graph::End end, std::uint32_t kind) const {
-    const graph::Block& block = bench_.phase.blocks[static_cast<std::size_t>(end.block)];
-    return block.name + "." + block.type->port_at(kind, BF_OUT, end.port).name;
-  }
-
-  const Bench& bench_;
-  Result& result_;
-  std::vector<std::string> names_;
-  std::mutex mutex_;
-};
+namespace {
 
 ParameterValue value_of(const ParameterDescription& described, const Value& value) {
   ParameterValue made;
@@ -116,9 +76,9 @@ Bench::Bench() {
 int Bench::add(const std::string& name, const std::string& id, const std::map<std::string, Value>& parameters) {
   graph::Block block;
   block.name = name;
-  block.type = registry().find(id);
+  block.type = test_registry().find(id);
   INFO(id);
-  for (const auto& plugin : registry().plugins()) UNSCOPED_INFO(plugin.file + ": " + plugin.refused);
+  for (const auto& plugin : test_registry().plugins()) UNSCOPED_INFO(plugin.file + ": " + plugin.refused);
   REQUIRE(block.type != nullptr);
   for (const auto& described : block.type->parameters) block.parameters.push_back(described.fallback);
   for (const auto& [key, value] : parameters) {
@@ -183,7 +143,7 @@ Result Bench::run(const Cut& cut, std::vector<std::unique_ptr<Instance>>& instan
     const std::lock_guard lock(*log_mutex);
     result.log.emplace_back(block, text);
   };
-  auto made = plan::instantiate(phase, registry(), services);
+  auto made = plan::instantiate(phase, test_registry(), services);
   if (!made) FAIL(text_of(made.error()));
   instances = std::move(*made);
   const auto facts = plan::establish_facts(phase, instances);
@@ -201,7 +161,7 @@ Result Bench::run(const Cut& cut, std::vector<std::unique_ptr<Instance>>& instan
     result.streams[block.name + "." + block.type->port_at(BF_STREAM, BF_OUT, recorded.port.port).name].resize(out.channels);
   }
   result.threads = plan->partitions.size();
-  Collector sink(*this, result);
+  Collector sink(phase, on_samples, result);
   execute::Options chosen = options;
   chosen.first_chunk = cut.first_chunk;
   chosen.call_limit = cut.call_limit;

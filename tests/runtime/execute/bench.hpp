@@ -56,6 +56,11 @@ struct Cut {
   std::int64_t call_limit = 0;
 };
 
+using OnSamples = std::function<tl::expected<void, std::string>(const std::string& port)>;
+
+/// The blocks of the fixtures.
+Registry& test_registry();
+
 /// A phase put together in code, with blocks of the fixtures. All streams are recorded.
 class Bench {
  public:
@@ -64,7 +69,7 @@ class Bench {
   graph::Phase phase;
   execute::Options options;
   /// Called with each piece of a stream that is kept; an error ends the run.
-  std::function<tl::expected<void, std::string>(const std::string& port)> on_samples;
+  OnSamples on_samples;
   std::vector<execute::InitialRecord> initial;
 
   int add(const std::string& name, const std::string& id, const std::map<std::string, Value>& parameters = {});
@@ -79,6 +84,8 @@ class Bench {
 
   /// Plans and runs it with new instances.
   Result run(const Cut& cut = {});
+  /// Runs it on the hosts that the blocks name, each in a thread of its own, over links in memory.
+  tl::expected<Result, Problems> run_on_hosts(const Cut& cut = {});
   /// As `run`; the instances outlive the call: for runs that leave a thread behind.
   Result run(const Cut& cut, std::vector<std::unique_ptr<Instance>>& instances);
 

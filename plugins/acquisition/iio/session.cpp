@@ -5,11 +5,15 @@
 #include <cerrno>
 #include <cstring>
 
+#include "acquisition/device/device_clock.hpp"
 #include "acquisition/sampling.hpp"
 #include "pipe_guard.hpp"
 
 namespace bodeflow::acquisition {
 namespace {
+
+// A wait that lasted so much of the timeout ended by it.
+constexpr double kOfTimeout = 0.95;
 
 template <class Name>
 std::string list(unsigned count, Name&& name) {
@@ -46,11 +50,13 @@ Expected<IioSession> IioSession::open(const IioSpec& spec) {
   IioSession made;
   made.spec_ = spec;
   errno = 0;
-  made.context_.reset(iio_create_context_from_uri(spec.uri.c_str()));
+  std::string uri = spec.uri;  // libiio 0.24 writes into it
+  made.context_.reset(iio_create_context_from_uri(uri.data()));
   if (!made.context_)
     return unexpected("no IIO at " + spec.uri + ": " + iio_error(errno) +
                       "; allowed: local:, ip:HOST, ip:HOST:PORT, usb:..., serial:...");
-  for (const auto step : {&IioSession::find_device, &IioSession::find_channels, &IioSession::set_up})
+  for (const auto step :
+       {&IioSession::find_device, &IioSession::write_attributes, &IioSession::find_channels, &IioSession::set_up})
     if (auto done = (made.*step)(); !done) return {Unexpected<Error>{done.error()}};
   return made;
 }
@@ -61,6 +67,14 @@ Expected<void> IioSession::find_device() {
   if (device_ != nullptr) return {};
   return unexpected("no IIO device '" + spec_.device + "' at " + spec_.uri + "; it has " +
                     list(count, [&](unsigned i) { return shown_name(iio_context_get_device(context_.get(), i)); }));
+}
+
+/// Before anything is read: a range changes the scales.
+Expected<void> IioSession::write_attributes() {
+  iio_context_set_timeout(context_.get(), static_cast<unsigned>(1e3 * spec_.timeout_s));
+  for (const IioAttribute& attribute : spec_.attributes)
+    if (auto done = write_attribute(device_, attribute); !done) return refused(done.error().text);
+  return {};
 }
 
 Expected<void> IioSession::find_channels() {
@@ -99,9 +113,6 @@ Expected<void> IioSession::find_channels() {
 }
 
 Expected<void> IioSession::set_up() {
-  iio_context_set_timeout(context_.get(), static_cast<unsigned>(1e3 * spec_.timeout_s));
-  for (const IioAttribute& attribute : spec_.attributes)
-    if (auto done = write_attribute(device_, attribute); !done) return refused(done.error().text);
   const auto rate = set_rate(device_, channels_.front().channel, spec_.rate_hz);
   if (!rate) return refused(rate.error().text);
   rate_hz_ = *rate;
@@ -126,8 +137,12 @@ Expected<void> IioSession::start() {
 
 Expected<std::size_t> IioSession::refill() {
   const PipeGuard guard;
+  const double begun_s = monotonic_s();
   const ssize_t bytes = iio_buffer_refill(buffer_.get());
-  if (bytes == -ETIMEDOUT) return refused("gave nothing for " + short_text(spec_.timeout_s) + " s");
+  // The network back end of 0.24 tells its timeout as a broken pipe.
+  const bool waited = monotonic_s() - begun_s > kOfTimeout * spec_.timeout_s;
+  if (bytes == -ETIMEDOUT || (bytes == -EPIPE && waited))
+    return refused("gave nothing for " + short_text(spec_.timeout_s) + " s");
   if (bytes == -EPIPE || bytes == -ECONNRESET) return refused("the connection is gone");
   if (bytes < 0) return refused("failed: " + iio_error(static_cast<int>(bytes)));
   const auto step = iio_buffer_step(buffer_.get());

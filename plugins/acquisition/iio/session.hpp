@@ -59,6 +59,7 @@ class IioSession {
   };
 
   Expected<void> find_device();
+  Expected<void> write_attributes();
   Expected<void> find_channels();
   Expected<void> set_up();
   std::int64_t raw(const iio_channel* channel, std::size_t sample) const;

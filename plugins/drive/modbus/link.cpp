@@ -106,13 +106,22 @@ Expected<std::unique_ptr<Link>> Link::open(const Endpoint& e) {
   const auto micro = static_cast<std::uint32_t>(std::llround((e.timeout_s - whole) * 1e6));
   modbus_set_response_timeout(context, whole, std::min<std::uint32_t>(micro, 999'999));
   modbus_set_byte_timeout(context, 0, 0);  // the whole answer within the time, however it trickles in
-  if (modbus_set_slave(context, e.unit_id) != 0 || modbus_connect(context) != 0) {
-    return refused(name_of(e) + ": " + reason(errno == EINPROGRESS ? ETIMEDOUT : errno, e.timeout_s));
-  }
-  if (modbus_get_socket(context) >= FD_SETSIZE) {
-    return refused(name_of(e) + ": the process has more files open than libmodbus can take");
-  }
+  if (modbus_set_slave(context, e.unit_id) != 0) return refused(name_of(e) + ": " + modbus_strerror(errno));
+  if (auto connected = link->connect(); !connected) return tl::make_unexpected(connected.error());
   return link;
+}
+
+Expected<void> Link::connect() {
+  if (modbus_connect(context_.get()) != 0) {
+    return refused(name_of(endpoint_) + ": " + reason(errno == EINPROGRESS ? ETIMEDOUT : errno, endpoint_.timeout_s));
+  }
+  if (modbus_get_socket(context_.get()) < FD_SETSIZE) return {};
+  return refused(name_of(endpoint_) + ": the process has more files open than libmodbus can take");
+}
+
+Expected<void> Link::reconnect() {
+  modbus_close(context_.get());
+  return connect();
 }
 
 template <class Ask>

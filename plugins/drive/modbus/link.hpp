@@ -41,6 +41,9 @@ class Link {
   /// Writes holding registers, at most 123; one alone by function 6, several by function 16. Errors: as of `read`.
   numerics::Expected<void> write(int address, std::span<const std::uint16_t> words);
 
+  /// Ends the connection and makes it anew; many drives take one client at a time. Errors: as of `open`.
+  numerics::Expected<void> reconnect();
+
   const Endpoint& endpoint() const { return endpoint_; }
   std::int64_t retried() const { return retried_; }
   /// True when the last error was that of the connection, not an exception of the drive.
@@ -52,6 +55,7 @@ class Link {
   };
 
   Link(const Endpoint& endpoint, _modbus* context) : endpoint_(endpoint), context_(context) {}
+  numerics::Expected<void> connect();
   template <class Ask>
   numerics::Expected<void> transact(const std::string& what, Ask&& ask);
 

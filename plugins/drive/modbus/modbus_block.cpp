@@ -19,6 +19,12 @@ using records::short_number;
 constexpr double kFewestPeriods = 3.0;  // of polling in the drive's watchdog: one cycle may be late without a stop
 constexpr double kMuchLate = 0.01;      // share of samples from which on it is worth a warning
 
+bool is_limited(const Register& r) { return std::isfinite(r.minimum); }
+
+std::string limits_of(const Register& r) {
+  return "'" + r.name + "' has the limits " + short_number(r.minimum) + " to " + quantity(r.maximum, r);
+}
+
 DriveCommand command_of(const std::string& word) {
   if (word == "enable") return DriveCommand::enable;
   return word == "disable" ? DriveCommand::disable : DriveCommand::quick_stop;
@@ -29,7 +35,8 @@ DriveCommand command_of(const std::string& word) {
 void ModbusBlock::describe(Describe& d) {
   d.id("drive.modbus")
       .summary("Runs a drive on Modbus TCP or RTU: set points, measurements, states after CiA 402.")
-      .role("device");
+      .role("device")
+      .role("actuator");
   d.doc(
       "Needs `run: {clock: realtime, chunk: 1}`. Each sample starts one cycle on a thread of its own: controlword and set points "
       "are written, statusword and measurements are read. A sample of `measurements` is what the cycle before read, a set point "
@@ -105,14 +112,15 @@ void ModbusBlock::select_feedback(const std::vector<std::string>& names) {
 
 std::vector<std::size_t> ModbusBlock::select(const std::vector<std::string>& names, const char* parameter, bool writable) const {
   std::vector<std::size_t> places;
-  const auto allowed = setup_.map.names(writable);
+  std::vector<std::string> allowed;
+  for (const std::string& name : setup_.map.names(writable)) {
+    if (!writable || (name != kControlword && name != kWatchdog)) allowed.push_back(name);  // the block itself writes these two
+  }
   for (const std::string& name : names) {
     if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
       fail(std::string(parameter) + ": '" + name + "' is no register that can be " + (writable ? "written" : "read") +
            bodeflow::detail::meant(name, allowed) + ", allowed: " + bodeflow::detail::listed(allowed));
     }
-    if (writable && (name == kControlword || name == kWatchdog))
-      fail(std::string(parameter) + ": the block itself writes '" + name + "'");
     const std::size_t place = setup_.map.find(name).value();
     if (std::find(places.begin(), places.end(), place) != places.end()) {
       fail(std::string(parameter) + ": '" + name + "' stands twice");
@@ -204,7 +212,13 @@ void ModbusBlock::advise(const Facts& f, Advice& a) {
          (setup_.drives ? "; the drive's watchdog is set to " + short_number(setup_.watchdog_s * 1e3) + " ms" : ""));
   for (const std::size_t place : setup_.set_points) {
     const Register& r = setup_.map.registers[place];
-    if (!std::isfinite(r.minimum)) a.warn("set point '" + r.name + "' has no limits in " + setup_.map.file);
+    if (is_limited(r)) a.tell("set point " + limits_of(r) + ", beyond them the drive is stopped");
+    if (!is_limited(r)) a.warn("set point '" + r.name + "' has no limits in " + setup_.map.file);
+  }
+  for (const std::size_t place : setup_.measurements) {
+    const Register& r = setup_.map.registers[place];
+    if (setup_.drives && is_limited(r))
+      a.tell("measured " + limits_of(r) + ", beyond them the drive is stopped in the same cycle");
   }
   if (setup_.drives && !setup_.set_points.empty() && !f.in(set_points).known) {
     a.warn("nothing is connected to 'set_points': the drive is enabled with its safe set points");

@@ -255,19 +255,10 @@ Expected<void> Session::stop_steps() {
 
 Stopped Session::stop() {
   if (!s_.drives || !has_written_) return {true, "nothing was written to the drive"};
-  Expected<void> stopped;
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    if (attempt == 1 || link_->broken()) {
-      auto link = Link::open(s_.endpoint);
-      if (!link) {
-        stopped = tl::make_unexpected(link.error());
-        break;
-      }
-      retried_ += link_->retried();
-      link_ = std::move(*link);
-    }
-    stopped = stop_steps();
-    if (stopped || !link_->broken()) break;
+  Expected<void> stopped = stop_steps();
+  if (!stopped && link_->broken()) {
+    const auto connected = link_->reconnect();
+    stopped = connected ? stop_steps() : connected;
   }
   if (stopped) return {true, "the drive was stopped and confirms " + std::string(name_of(polled_.state))};
   return {false, "the drive did not confirm that it stopped (" + stopped.error().text + "); its own watchdog of " +

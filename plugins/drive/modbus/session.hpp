@@ -58,7 +58,7 @@ class Session {
   /// drive can't be reached the text says that its own watchdog is left to act.
   Stopped stop();
 
-  std::int64_t retried() const { return retried_ + link_->retried(); }
+  std::int64_t retried() const { return link_->retried(); }
   /// What was read last.
   const Polled& polled() const { return polled_; }
 
@@ -90,7 +90,6 @@ class Session {
   bool armed_ = false;
   bool has_written_ = false;
   double enabling_since_s_ = -1.0;
-  std::int64_t retried_ = 0;
 };
 
 }  // namespace bodeflow::drive::modbus

@@ -41,11 +41,11 @@ class DriveBench {
     s.endpoint.tcp = is_tcp_;
     s.endpoint.port = server_->port();
     s.endpoint.device = server_->line();
-    s.endpoint.parity = 'N';  // a pseudo terminal has none
-    s.endpoint.timeout_s = 0.1;
+    s.endpoint.parity = 'N';      // a pseudo terminal has none
+    s.endpoint.timeout_s = 0.25;  // on a machine that is busy with other tests too
     s.set_points = {s.map.find("target_speed").value()};
     s.measurements = {s.map.find("speed").value()};
-    s.watchdog_s = 0.3;
+    s.watchdog_s = 0.8;
     return s;
   }
 

@@ -16,9 +16,6 @@ namespace bodeflow::transport::fast_dds {
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-/// What a participant asks for: transports, discovery, lease, security.
-tl::expected<dds::DomainParticipantQos, std::string> participant_qos(const Settings& settings, Settings::Carrier carrier);
-
 /// The library's errors go here instead of to standard output; the last one explains a refusal.
 void catch_errors();
 std::string last_error();
@@ -26,7 +23,7 @@ std::string last_error();
 /// A DDS participant with its publisher, subscriber and topics. Deleted by `leave`.
 class Domain {
  public:
-  explicit Domain(dds::DomainParticipant* participant);
+  Domain(dds::DomainParticipant* participant, std::shared_ptr<void> port_claim);
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
   ~Domain();
@@ -41,6 +38,7 @@ class Domain {
 
  private:
   std::mutex mutex_;
+  std::shared_ptr<void> port_claim_;
   dds::DomainParticipant* participant_;
   dds::Publisher* publisher_ = nullptr;
   dds::Subscriber* subscriber_ = nullptr;

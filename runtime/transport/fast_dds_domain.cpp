@@ -3,9 +3,14 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <cstdio>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 
@@ -73,22 +78,56 @@ void add_transport(dds::DomainParticipantQos& qos, const Settings& settings, Car
   }
 }
 
-/// The first TCP port that nobody on this host listens on; 0: none of the eight.
-std::uint16_t free_tcp_port(std::uint32_t domain) {
+std::uint16_t first_tcp_port(std::uint32_t domain) { return static_cast<std::uint16_t>(kTcpPort + kTcpPorts * domain); }
+
+/// A TCP port that nobody on this host listens on, and this process's claim to it: a socket whose name only one process has.
+struct TcpPort {
+  std::uint16_t port = 0;
+  std::shared_ptr<void> claim;
+};
+
+bool binds(int socket, const sockaddr* address, std::size_t size) {
+  return bind(socket, address, static_cast<socklen_t>(size)) == 0;
+}
+
+bool is_free(std::uint16_t port) {
+  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int yes = 1;
+  setsockopt(probe, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  const bool free = binds(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  close(probe);
+  return free;
+}
+
+/// One of this host's addresses.
+bool is_here(const std::string& host) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  if (inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1) return false;
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool here = binds(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  close(probe);
+  return here;
+}
+
+/// The first free one of the eight of the domain; none: port 0.
+TcpPort claim_tcp_port(std::uint32_t domain) {
   for (std::uint16_t i = 0; i < kTcpPorts; ++i) {
-    const auto port = static_cast<std::uint16_t>(kTcpPort + 10 * domain + i);
-    const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    if (probe < 0) return 0;
-    const int yes = 1;
-    setsockopt(probe, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    const bool free = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    close(probe);
-    if (free) return port;
+    const auto port = static_cast<std::uint16_t>(first_tcp_port(domain) + i);
+    sockaddr_un name{};
+    name.sun_family = AF_UNIX;
+    const auto length = std::snprintf(name.sun_path + 1, sizeof name.sun_path - 1, "bodeflow-tcp-%u", unsigned{port});
+    const int held = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const auto size = offsetof(sockaddr_un, sun_path) + 1 + static_cast<std::size_t>(length);
+    if (binds(held, reinterpret_cast<const sockaddr*>(&name), size) && is_free(port)) {
+      return {port, std::shared_ptr<void>(nullptr, [held](void*) { close(held); })};
+    }
+    close(held);
   }
-  return 0;
+  return {};
 }
 
 rtps::Locator_t locator(const Address& address, Carrier carrier) {
@@ -114,14 +153,12 @@ void add_server(dds::DomainParticipantQos& qos, Address address, Carrier carrier
   qos.wire_protocol().builtin.discovery_config.m_DiscoveryServers.push_back(server);
 }
 
-tl::expected<void, std::string> add_peers(dds::DomainParticipantQos& qos, const Settings& settings, Carrier carrier) {
+tl::expected<void, std::string> add_peers(dds::DomainParticipantQos& qos, const Settings& settings, Carrier carrier,
+                                          std::uint16_t tcp_port) {
   auto& builtin = qos.wire_protocol().builtin;
   if (carrier == Carrier::tcp) {
-    const auto port = free_tcp_port(settings.domain);
-    if (port == 0)
-      return tl::unexpected<std::string>("no free TCP port from " + std::to_string(kTcpPort + 10 * settings.domain) + " on");
-    static_cast<eprosima::fastdds::rtps::TCPv4TransportDescriptor&>(*qos.transport().user_transports.front())
-        .add_listener_port(port);
+    auto& tcp = static_cast<eprosima::fastdds::rtps::TCPv4TransportDescriptor&>(*qos.transport().user_transports.front());
+    tcp.add_listener_port(tcp_port);
   }
   if (carrier == Carrier::shared_memory) return {};
   if (settings.discovery == Settings::Discovery::multicast && carrier == Carrier::udp) return {};
@@ -134,15 +171,13 @@ tl::expected<void, std::string> add_peers(dds::DomainParticipantQos& qos, const 
     builtin.metatrafficUnicastLocatorList.push_back(rtps::Locator_t());  // any address, the usual port: and so no multicast
   }
   for (std::size_t i = 0; i < settings.peers.size(); ++i) {
-    const auto address = parse_address(settings.peers[i]);
+    auto address = parse_address(settings.peers[i]);
     if (!address) return tl::unexpected(address.error());
+    // Ports where nobody listens keep the library from reaching the others, so one is named or taken: the first process's.
+    if (carrier == Carrier::tcp && !servers && address->port == 0) address->port = first_tcp_port(settings.domain);
+    if (carrier == Carrier::tcp && address->port == tcp_port && is_here(address->host)) continue;  // not to itself
     if (servers) {
       add_server(qos, *address, carrier, i);
-    } else if (carrier == Carrier::tcp && address->port == 0) {
-      for (std::uint16_t k = 0; k < kTcpPorts; ++k) {
-        const auto port = static_cast<std::uint16_t>(kTcpPort + 10 * settings.domain + k);
-        builtin.initialPeersList.push_back(locator({address->host, port}, carrier));
-      }
     } else {
       builtin.initialPeersList.push_back(locator(*address, carrier));
     }
@@ -225,7 +260,8 @@ std::string last_error() {
   return ErrorKeeper::text().empty() ? "Fast DDS gives no reason" : ErrorKeeper::text();
 }
 
-tl::expected<dds::DomainParticipantQos, std::string> participant_qos(const Settings& settings, Carrier carrier) {
+tl::expected<dds::DomainParticipantQos, std::string> participant_qos(const Settings& settings, Carrier carrier,
+                                                                     std::uint16_t tcp_port) {
   dds::DomainParticipantQos qos;
   qos.name(settings.name);
   if (carrier == Carrier::udp && (settings.datagram < 512 || settings.datagram > 65500)) {
@@ -237,14 +273,15 @@ tl::expected<dds::DomainParticipantQos, std::string> participant_qos(const Setti
   discovery.leaseDuration_announcementperiod = Duration_t(std::min(1.0, settings.lease_s / 4.0));
   discovery.initial_announcements.count = 10;
   discovery.initial_announcements.period = Duration_t(0.1);
-  if (auto done = add_peers(qos, settings, carrier); !done) return tl::unexpected(done.error());
+  if (auto done = add_peers(qos, settings, carrier, tcp_port); !done) return tl::unexpected(done.error());
   if (settings.security) {
     if (auto done = add_security(qos, *settings.security); !done) return tl::unexpected(done.error());
   }
   return qos;
 }
 
-Domain::Domain(dds::DomainParticipant* participant) : participant_(participant) {}
+Domain::Domain(dds::DomainParticipant* participant, std::shared_ptr<void> port_claim)
+    : port_claim_(std::move(port_claim)), participant_(participant) {}
 
 Domain::~Domain() {
   participant_->delete_contained_entities();
@@ -275,11 +312,17 @@ namespace bodeflow::transport::middleware {
 
 tl::expected<std::shared_ptr<Node>, std::string> join(const Settings& settings, Settings::Carrier carrier) {
   fast_dds::catch_errors();
-  auto qos = fast_dds::participant_qos(settings, carrier);
+  fast_dds::TcpPort port;
+  if (carrier == Settings::Carrier::tcp) {
+    port = fast_dds::claim_tcp_port(settings.domain);
+    if (port.port == 0)
+      return tl::unexpected<std::string>("this host has no free TCP port for domain " + std::to_string(settings.domain));
+  }
+  auto qos = fast_dds::participant_qos(settings, carrier, port.port);
   if (!qos) return tl::unexpected(qos.error());
   auto* participant = fast_dds::dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, *qos);
   if (participant == nullptr) return tl::unexpected("Fast DDS made no participant: " + fast_dds::last_error());
-  auto domain = std::make_shared<fast_dds::Domain>(participant);
+  auto domain = std::make_shared<fast_dds::Domain>(participant, port.claim);
   const bool open = domain->open();
   auto node = std::make_shared<fast_dds::FastNode>(std::move(domain));
   if (!open) return tl::unexpected("Fast DDS made no publisher or subscriber: " + fast_dds::last_error());

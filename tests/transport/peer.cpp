@@ -121,6 +121,7 @@ int send(const std::shared_ptr<Participant>& participant) {
     const std::span<const std::byte> parts[] = {std::as_bytes(std::span(values))};
     if (auto done = (*outlet)->send(header, parts, go_on); !done) {
       report((*outlet)->state());
+      std::cout << "stalled=" << stalled << '\n';
       return failed(done.error());
     }
     position += static_cast<std::int64_t>(samples);
@@ -185,6 +186,7 @@ int mail(const std::shared_ptr<Participant>& participant, bool sends) {
   if (!mailbox) return failed(mailbox.error());
   const auto got = (*mailbox)->receive(number("seconds", 5));
   std::cout << "got=" << (got ? static_cast<long>(got->size()) : -1) << std::endl;
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   return 0;
 }
 

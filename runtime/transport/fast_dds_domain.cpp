@@ -191,8 +191,8 @@ tl::expected<void, std::string> add_security(dds::DomainParticipantQos& qos, con
   std::string missing;
   const auto file = [&](const std::string& name, const std::filesystem::path& path) {
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) missing = path.string();
-    set(name.c_str(), "file://" + std::filesystem::absolute(path).string());
+    if (!std::filesystem::is_regular_file(path, ignored) && missing.empty()) missing = path.string();
+    set(name.c_str(), "file://" + std::filesystem::absolute(path, ignored).string());
   };
   set("dds.sec.auth.plugin", "builtin.PKI-DH");
   file("dds.sec.auth.builtin.PKI-DH.identity_ca", security.authority);

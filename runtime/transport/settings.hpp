@@ -43,10 +43,10 @@ struct Settings {
   std::string name = "bodeflow";  ///< of the participant, shown by others
   std::uint32_t domain = 0;
   Discovery discovery = Discovery::multicast;
-  std::vector<std::string> peers;  ///< `address` or `address:port`; with Discovery::server the servers (port 11811). Over TCP
-                                   ///< processes listen on the first free of 5100 + 8 * domain and the seven after it; a peer
-                                   ///< without a port is its host's first, and peers see those only whom they name or who name
-                                   ///< them: more than two processes need a server
+  /// `address` or `address:port`; with Discovery::server the servers (port 11811). Over TCP a process listens on the first free
+  /// of 5100 + 8 * domain and the seven ports after it; a peer without a port is the first. Two that name each other may never
+  /// connect over TCP, and peers see those only whom they name or who name them: more than two processes need a server there.
+  std::vector<std::string> peers;
   Carrier carrier = Carrier::automatic;
   std::vector<std::string> interfaces;  ///< IP addresses of the interfaces to use; empty: all
   std::uint32_t datagram = 1400;        ///< bytes in a UDP datagram, at most: larger ones do not live through loss

@@ -1,6 +1,8 @@
 // One end of an edge in a process of its own, for the tests: `peer send|receive name=value ...`.
 // Each sample of a stream is its own index; the receiver compares every one and prints what it saw as `name=value` lines.
 #include <bodeflow/abi.h>
+#include <linux/filter.h>
+#include <sys/socket.h>
 
 #include <chrono>
 #include <cstring>
@@ -50,7 +52,7 @@ Settings settings_of_options() {
   settings.carrier = carriers.at(text("carrier", "automatic"));
   if (options.contains("peer")) {
     settings.discovery = Settings::Discovery::peers;
-    settings.peers = {text("peer", "")};
+    if (!text("peer", "").empty()) settings.peers = {text("peer", "")};
   }
   if (options.contains("server")) {
     settings.discovery = Settings::Discovery::server;
@@ -67,6 +69,26 @@ Settings settings_of_options() {
                                  {}};
   }
   return settings;
+}
+
+/// Each UDP socket of this process loses that share of what comes, by chance: a filter in the kernel.
+void lose(double share) {
+  if (share <= 0.0) return;
+  const auto limit = static_cast<std::uint32_t>(share * 4294967295.0);
+  sock_filter code[] = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_RANDOM)),
+                        BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, limit, 1, 0), BPF_STMT(BPF_RET | BPF_K, 0),
+                        BPF_STMT(BPF_RET | BPF_K, 0xFFFFFFFF)};
+  const sock_fprog program{4, code};
+  int filtered = 0;
+  for (int file = 3; file < 200; ++file) {
+    int type = 0, family = 0;
+    socklen_t size = sizeof type;
+    if (getsockopt(file, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_DGRAM) continue;
+    size = sizeof family;
+    if (getsockopt(file, SOL_SOCKET, SO_DOMAIN, &family, &size) != 0 || family != AF_INET) continue;
+    if (setsockopt(file, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program) == 0) ++filtered;
+  }
+  std::cout << "filtered=" << filtered << std::endl;
 }
 
 void report(const EdgeState& state) {
@@ -220,6 +242,7 @@ int main(int count, char** arguments) {
     std::cout << "error=" << participant.error() << std::endl;
     return 2;
   }
+  lose(number("loss", 0.0));
   if (what == "send") return send(*participant);
   if (what == "receive") return receive(*participant);
   if (what == "post") return mail(*participant, true);

@@ -35,6 +35,10 @@ struct Security {
   std::filesystem::path revocations;  ///< list of certificates that are no longer trusted, read once at the join; empty: none
 };
 
+/// With security, UDP datagrams may be this large at least, whatever Settings::datagram says: Fast DDS 2.9 sends each message of
+/// the handshake, with certificate and permissions, in one piece, and never matches where that does not fit.
+inline constexpr std::uint32_t kSmallestSecureDatagram = 7300;
+
 /// How a process takes part.
 struct Settings {
   enum class Discovery { multicast, peers, server };

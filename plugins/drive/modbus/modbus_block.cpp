@@ -286,12 +286,12 @@ void ModbusBlock::finish(Io& io) {
   const double cycles = static_cast<double>(std::max<std::int64_t>(counts.cycles, 1));
   RecordBuilder r("drive_report");
   r.set("device", setup_.map.device).set("endpoint", name_of(setup_.endpoint));
-  r.set("cycles", counts.cycles).set("late", counts.late).set("retried", counts.retried);
+  r.set("samples", counts.samples).set("cycles", counts.cycles).set("late", counts.late).set("retried", counts.retried);
   r.set("mean_cycle_ms", counts.total_s / cycles * 1e3).set("longest_cycle_ms", counts.longest_s * 1e3);
   r.set("stopped", stopped.confirmed).set("stop", stopped.text);
   io.emit(report, r);
-  if (static_cast<double>(counts.late) > kMuchLate * cycles) {
-    log_warning(std::to_string(counts.late) + " of " + std::to_string(counts.cycles) + " samples came late: a cycle takes " +
+  if (static_cast<double>(counts.late) > kMuchLate * static_cast<double>(counts.samples)) {
+    log_warning(std::to_string(counts.late) + " of " + std::to_string(counts.samples) + " samples came late: a cycle takes " +
                 short_number(counts.total_s / cycles * 1e3) + " ms in the mean, " + short_number(counts.longest_s * 1e3) +
                 " ms at most; lower poll_rate or read fewer registers");
   }

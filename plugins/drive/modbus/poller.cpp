@@ -18,6 +18,7 @@ Expected<void> Poller::exchange(DriveCommand command, const std::vector<double>&
   {
     const std::lock_guard lock(mutex_);
     if (failure_) return refused(*failure_ + (stopped_ ? "; " + stopped_->text : "; the drive is being stopped"));
+    ++counts_.samples;
     if (pending_ || busy_) ++counts_.late;
     wanted_.command = command;
     wanted_.set_points = set_points;

@@ -14,6 +14,7 @@ namespace bodeflow::drive::modbus {
 
 /// Counts of a run.
 struct PollCounts {
+  std::int64_t samples = 0;  ///< calls of `exchange`
   std::int64_t cycles = 0;   ///< that the drive answered
   std::int64_t late = 0;     ///< samples for which the cycle before was not over
   std::int64_t retried = 0;  ///< questions asked again

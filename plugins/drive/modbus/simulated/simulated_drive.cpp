@@ -81,10 +81,6 @@ void SimulatedDrive::enter(State state) {
   char line[160];
   std::snprintf(line, sizeof line, "%9.3f s  %s -> %s, %.1f rpm", time_s_, name_of(state_), name_of(state), speed_rpm());
   events_.emplace_back(line);
-  if (state == State::fault || state == State::fault_reaction) {
-    std::snprintf(line, sizeof line, "%9.3f s  fault 0x%04x", time_s_, fault_code_);
-    events_.emplace_back(line);
-  }
   state_ = state;
   enable_wanted_ = false;
   if (output_stage_on()) return;
@@ -92,13 +88,20 @@ void SimulatedDrive::enter(State state) {
   magnetised_s_ = 0.0;
 }
 
-void SimulatedDrive::react(std::uint16_t code) {
+void SimulatedDrive::set_fault(std::uint16_t code) {
   fault_code_ = code;
+  char line[64];
+  std::snprintf(line, sizeof line, "%9.3f s  fault 0x%04x", time_s_, code);
+  events_.emplace_back(line);
+}
+
+void SimulatedDrive::react(std::uint16_t code) {
+  set_fault(code);
   enter(output_stage_on() ? State::fault_reaction : State::fault);
 }
 
 void SimulatedDrive::trip(std::uint16_t code) {
-  fault_code_ = code;
+  set_fault(code);
   enter(State::fault);
 }
 

@@ -54,6 +54,7 @@ class SimulatedDrive {
  private:
   void command(std::uint16_t word);
   void enter(State state);
+  void set_fault(std::uint16_t code);
   void react(std::uint16_t code);
   void step();
   void step_state();

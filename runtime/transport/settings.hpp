@@ -48,8 +48,9 @@ struct Settings {
   std::uint32_t domain = 0;
   Discovery discovery = Discovery::multicast;
   /// `address` or `address:port`; with Discovery::server the servers (port 11811). Over TCP a process listens on the first free
-  /// of 5100 + 8 * domain and the seven ports after it; a peer without a port is the first. Two that name each other may never
-  /// connect over TCP, and peers see those only whom they name or who name them: more than two processes need a server there.
+  /// of 5100 + 8 * domain and the seven ports after it; a peer without a port is the first. Fast DDS never
+  /// connects two that name each other at the same time over TCP, and now and then not to one that is just joining; peers see
+  /// those only whom they name or who name them, so that more than two processes need a server there.
   std::vector<std::string> peers;
   Carrier carrier = Carrier::automatic;
   std::vector<std::string> interfaces;  ///< IP addresses of the interfaces to use; empty: all

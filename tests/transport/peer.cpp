@@ -242,6 +242,7 @@ int main(int count, char** arguments) {
     std::cout << "error=" << participant.error() << std::endl;
     return 2;
   }
+  std::cout << "joined" << std::endl;
   lose(number("loss", 0.0));
   if (what == "send") return send(*participant);
   if (what == "receive") return receive(*participant);

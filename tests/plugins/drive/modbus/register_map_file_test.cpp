@@ -1,5 +1,8 @@
 #include "register_map_file.hpp"
 
+#include <fstream>
+#include <sstream>
+
 #include "catch.hpp"
 #include "register_groups.hpp"
 
@@ -116,4 +119,30 @@ TEST_CASE("neighbouring registers share a question and gaps are never read over"
   CHECK(groups[1].address == 8);
   CHECK(groups[2].table == Table::input);
   CHECK(group_registers(*map, places, 3).size() == 4);
+}
+
+TEST_CASE("a register map with any character changed or cut anywhere is read or refused with a reason") {
+  std::ifstream stream(BODEFLOW_SOURCE_DIR "/graphs/drive/maps/simulated_drive.yaml");
+  std::ostringstream whole;
+  whole << stream.rdbuf();
+  const std::string text = whole.str();
+  REQUIRE(text.size() > 1000);
+  const std::string others = "{}[]:,-&*!'\"x0\n\t ";
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at < text.size(); at += 7) {
+    std::string changed = text;
+    changed[at] = others[at % others.size()];
+    for (const std::string& one : {changed, text.substr(0, at)}) {
+      const auto map = parse_register_map(one, "map.yaml");
+      if (map) continue;
+      ++refused;
+      CHECK(map.error().text.rfind("map.yaml:", 0) == 0);
+    }
+  }
+  CHECK(refused > 100);
+}
+
+TEST_CASE("lists in lists without end and a list that holds itself are refused") {
+  CHECK(problem(std::string(100'000, '[')).rfind("map.yaml:", 0) == 0);
+  CHECK(problem("registers: &a {speed: *a}").rfind("map.yaml:", 0) == 0);
 }

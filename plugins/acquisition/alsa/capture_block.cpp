@@ -46,6 +46,7 @@ void AlsaCapture::resolve(Facts& f) {
 
 void AlsaCapture::activate(const Activation& a) {
   require_realtime(a);
+  if (const std::string advice = advice_on_calls(a); !advice.empty()) log_warning(advice);
   auto opened = Pcm::open(card_.spec);
   if (!opened) fail(opened.error().text);
   pcm_.emplace(std::move(*opened));

@@ -82,6 +82,7 @@ void AlsaDuplex::resolve(Facts& f) {
 }
 
 void AlsaDuplex::advise(const Facts& f, Advice& a) {
+  advise_on_level(f.in(in), play_, a);
   a.tell("the output leads by " +
          (lead_asked_ ? std::to_string(*lead_asked_)
                       : "the device's buffer less a period, about " + std::to_string(card_.spec.buffer - card_.spec.period)) +
@@ -108,6 +109,7 @@ Pcm AlsaDuplex::open(Direction direction, std::size_t channels) const {
 
 void AlsaDuplex::activate(const Activation& a) {
   require_realtime(a);
+  if (const std::string advice = advice_on_calls(a); !advice.empty()) log_warning(advice);
   Pcm playback = open(Direction::playback, play_.names.size());
   Pcm capture = open(Direction::capture, capture_.names.size());
   const std::size_t most = playback.spec().buffer - playback.spec().period;

@@ -45,8 +45,11 @@ void AlsaPlayback::resolve(Facts& f) {
   check_played(x, channels_, card_.clock);
 }
 
+void AlsaPlayback::advise(const Facts& f, Advice& a) { advise_on_level(f.in(in), channels_, a); }
+
 void AlsaPlayback::activate(const Activation& a) {
   require_realtime(a);
+  if (const std::string advice = advice_on_calls(a); !advice.empty()) log_warning(advice);
   auto opened = Pcm::open(card_.spec);
   if (!opened) fail(opened.error().text);
   pcm_.emplace(std::move(*opened));
@@ -113,11 +116,13 @@ void AlsaPlayback::break_off(Io& io, std::size_t offset) {
   if (!card_.mark_gaps)
     fail(text_of(gap) + ": the device was not fed in time; raise lead and buffer, or set on_gap: mark to go on");
   begin();
+  const auto silence = static_cast<std::int64_t>(lead_);
   gap.missing = samples_missing(clock_, gap.position, rate_);
+  if (gap.missing) *gap.missing += silence;
   report_.count(gap);
   log_warning(text_of(gap));
   io.emit(gaps, gap_record(gap), offset);
-  clock_.move_to(gap.position);
+  clock_.move_to(gap.position - silence);
   base_ = gap.position;
 }
 

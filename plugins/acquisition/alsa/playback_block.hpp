@@ -14,6 +14,7 @@ class AlsaPlayback final : public Block {
   static void describe(Describe& d);
   void configure(const Parameters& p) override;
   void resolve(Facts& f) override;
+  void advise(const Facts& f, Advice& a) override;
   void activate(const Activation& a) override;
   void process(Io& io) override;
   void finish(Io& io) override;

@@ -1,6 +1,11 @@
 #include "playing.hpp"
 
+#include <algorithm>
 #include <bodeflow/units.hpp>
+#include <cmath>
+#include <limits>
+
+#include "acquisition/sampling.hpp"
 
 namespace bodeflow::acquisition {
 
@@ -30,6 +35,23 @@ void check_played(const StreamFacts& x, const Channels& channels, const std::str
     const std::string& given = x.channel_units.empty() ? x.unit : x.channel_units[c];
     if (!same_unit(given, channels.scales[c].unit))
       fail("channel " + std::to_string(c + 1) + " of the input is in " + given + ", its scale in " + channels.scales[c].unit);
+  }
+}
+
+void advise_on_level(const StreamFacts& x, const Channels& channels, Advice& a) {
+  const auto crest = x.note("excitation.crest_factor"), amplitudes = x.note("excitation.amplitudes");
+  if (crest.empty() || amplitudes.empty() || channels.scales.empty()) return;
+  double power = 0.0;
+  for (const double peak : amplitudes) power += 0.5 * peak * peak;
+  const double largest = crest.front() * std::sqrt(power);
+  double full = std::numeric_limits<double>::infinity();
+  for (const ChannelScale& s : channels.scales) full = std::min(full, std::abs(s.gain) - std::abs(s.offset));
+  const std::string text = "the excitation reaches " + short_text(largest) + " of " + short_text(full) +
+                           (channels.unit().empty() ? "" : " " + channels.unit()) + " at full scale";
+  if (largest > full) {
+    a.warn(text + ": what is above is cut off; lower the excitation");
+  } else {
+    a.tell(text);
   }
 }
 

@@ -13,4 +13,7 @@ std::optional<std::size_t> read_lead(const Parameters& p, const PcmSpec& spec);
 /// another device.
 void check_played(const StreamFacts& x, const Channels& channels, const std::string& clock);
 
+/// Tells how far what is known of the stream fills the converter, and warns where it is limited.
+void advise_on_level(const StreamFacts& x, const Channels& channels, Advice& a);
+
 }  // namespace bodeflow::acquisition

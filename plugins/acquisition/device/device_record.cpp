@@ -1,11 +1,18 @@
 #include "device_record.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "acquisition/number_line.hpp"
+#include "acquisition/sampling.hpp"
 
 namespace bodeflow::acquisition {
+namespace {
+
+constexpr double kLongCall_s = 2.0;
+
+}  // namespace
 
 const char* name_of(GapCause cause) {
   return cause == GapCause::overrun ? "overrun" : cause == GapCause::underrun ? "underrun" : "loss";
@@ -66,6 +73,14 @@ RecordBuilder device_record(const DeviceReport& report, const DeviceClock& clock
 
 void require_realtime(const Activation& a) {
   if (!a.realtime) fail("a device goes by real time; run: {clock: simulated} does not. Allowed: realtime, hardware");
+}
+
+std::string advice_on_calls(const Activation& a) {
+  if (!a.rate.known()) return "";
+  const double call_s = static_cast<double>(a.max_count) / a.rate.hz();
+  if (call_s <= kLongCall_s) return "";
+  return "the engine asks for " + short_text(call_s) + " s of samples at once, and Ctrl-C waits for them: set run: {chunk: " +
+         std::to_string(std::max<std::int64_t>(1, std::llround(kLongCall_s / 4 * a.rate.hz()))) + "}";
 }
 
 void describe_device_ports(Describe& d, MessageOut device, MessageOut gaps) {

@@ -48,6 +48,9 @@ RecordBuilder device_record(const DeviceReport& report, const DeviceClock& clock
 /// Throws Failure where the run's clock does not go by real time: a device can't be waited for in simulated time.
 void require_realtime(const Activation& a);
 
+/// What to do about calls that last so long that Ctrl-C has to wait for them; "" for short ones.
+std::string advice_on_calls(const Activation& a);
+
 /// Describes `device`, the report at the end, and `gaps`.
 void describe_device_ports(Describe& d, MessageOut device, MessageOut gaps);
 

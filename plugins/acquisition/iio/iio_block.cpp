@@ -13,6 +13,14 @@ constexpr double kSameRate = 1e-6;
 // A step between two time stamps of more than so many intervals is a loss.
 constexpr double kLoss = 1.5;
 
+// Samples are handed over so often, for a run that can be followed and ended.
+constexpr double kUsual_s = 0.05;
+constexpr double kMostUsual = 4096;
+
+std::size_t usual_buffer(double rate_hz) {
+  return static_cast<std::size_t>(std::clamp(std::round(kUsual_s * rate_hz), 1.0, kMostUsual));
+}
+
 void describe_connection(Describe& d) {
   d.parameter("uri", "local:").doc("`local:`, `ip:HOST`, `ip:HOST:PORT`, `usb:...`, `serial:...`; `iio_info -s` finds devices");
   d.required<std::string>("device").doc("the device's name, label or id, such as ad7606 or iio:device0");
@@ -23,7 +31,9 @@ void describe_connection(Describe& d) {
   d.parameter("attributes", std::vector<std::string>{})
       .doc("written before the capture begins: name=value, or channel/name=value");
   d.optional<std::string>("trigger").doc("name or id of the trigger that starts each conversion");
-  d.parameter("buffer", std::int64_t{4096}).range(1, 1 << 24).doc("samples that the device hands over at once");
+  d.optional<std::int64_t>("buffer")
+      .range(1, 1 << 24)
+      .doc("samples that the device hands over at once; without it those of 50 ms, at most 4096");
   d.parameter("kernel_buffers", std::int64_t{8}).range(1, 1024).doc("of these, which the kernel fills while none is read");
   d.parameter("timeout", 2.0).unit("s").range(0.05, 60).doc("a device that gives nothing for so long ends the run");
   d.parameter("timestamps", false)
@@ -34,6 +44,7 @@ void describe_connection(Describe& d) {
   d.optional<std::string>("clock").doc("clock domain of the device; `iio:`, the address and the device's name without it");
 }
 
+/// The unit of the reading where nothing was made of it, else "".
 std::string unit_given(const ScaleSettings& s, const Parameters& p, const IioQuantity& quantity) {
   return p.given("unit") || p.given("scale") || !s.calibration.empty() ? "" : quantity.unit;
 }
@@ -74,9 +85,13 @@ void IioCapture::configure(const Parameters& p) {
   }
   if (p.has("trigger")) spec_.trigger = p.text("trigger");
   spec_.rate_hz = p.number("rate");
-  spec_.buffer = static_cast<std::size_t>(p.integer("buffer"));
+  spec_.buffer = p.has("buffer") ? static_cast<std::size_t>(p.integer("buffer")) : usual_buffer(spec_.rate_hz);
   spec_.kernel_buffers = static_cast<unsigned>(p.integer("kernel_buffers"));
   spec_.timeout_s = p.number("timeout");
+  if (static_cast<double>(spec_.buffer) / spec_.rate_hz >= spec_.timeout_s)
+    fail("a buffer of " + std::to_string(spec_.buffer) + " samples comes every " +
+         short_text(static_cast<double>(spec_.buffer) / spec_.rate_hz) + " s, the timeout is " + short_text(spec_.timeout_s) +
+         " s; lower buffer or raise timeout");
   spec_.timestamps = p.boolean("timestamps");
   clock_name_ = p.has("clock") ? p.text("clock") : "iio:" + spec_.uri + "/" + spec_.device;
   mark_gaps_ = p.text("on_gap") == "mark";
@@ -102,6 +117,7 @@ void IioCapture::resolve(Facts& f) {
 
 void IioCapture::activate(const Activation& a) {
   require_realtime(a);
+  if (const std::string advice = advice_on_calls(a); !advice.empty()) log_warning(advice);
   auto opened = IioSession::open(spec_);
   if (!opened) fail(opened.error().text);
   session_.emplace(std::move(*opened));

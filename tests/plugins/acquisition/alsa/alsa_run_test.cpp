@@ -102,16 +102,27 @@ TEST_CASE("a multisine played and captured identifies the filter and the delay o
   CHECK(device["measured_rate"].get<double>() == Approx(48e3).epsilon(1e-3));
 }
 
-TEST_CASE("the round trip is measured by its graph and compensated as measured") {
+TEST_CASE("the round trip is measured by its graph") {
   const Bench bench("delay 123 noise 1e-4");
   const auto delay = bench.measure("sound_card_round_trip.yaml", {})["delay"]["attributes"];
   const double samples = 48e3 * delay["delay"].get<double>();
   CHECK(samples == Approx(123).margin(0.01));
+}
 
-  const Bench other("delay 123 noise 1e-4 " + kSection);
-  const auto results = other.measure("sound_card.yaml", {"round_trip=123"});
+TEST_CASE("the round trip as measured is taken out of what is captured") {
+  const Bench bench("delay 123 noise 1e-4 " + kSection);
+  const auto results = bench.measure("sound_card.yaml", {"round_trip=123"});
   CHECK(inside(results["response"], 0) >= 162);
   CHECK(results["card"]["attributes"]["round_trip_delay"] == 123);
+}
+
+TEST_CASE("the corner of the AC coupling is measured by its graph") {
+  // One pole at 20 Hz, one zero at 0: 0.9973854 = exp(-2 pi 20 / 48000).
+  const Bench bench("delay 5 noise 1e-4 b [ 0.9986927 -0.9986927 0.0 ] a [ -0.9973854 0.0 ]");
+  const auto model = bench.measure("sound_card_coupling.yaml", {"period=9600", "round_trip=5"})["coupling"];
+  const auto& arrays = model["arrays"];
+  const Complex pole(arrays["poles"]["data"][0][0], arrays["poles"]["data"][0][1]);
+  CHECK(std::abs(pole) / (2 * std::numbers::pi) == Approx(20).margin(0.3));
 }
 
 TEST_CASE("overruns and underruns injected into a measurement are counted exactly and it goes on") {
@@ -229,6 +240,20 @@ TEST_CASE("samples played by a playback block alone all leave the device and lim
   CHECK(device["clipped"].get<int>() > 3000);  // a third of a sine is above 2 / 2.2 of its peak
   CHECK_THAT(bench.run({graph.string(), "--set", "blocks.sine.unit=A"}).err,
              Contains("channel 1 of the input is in A, its scale in V"));
+}
+
+TEST_CASE("underruns of a playback are counted exactly and the silence behind them is told") {
+  const Bench bench("underruns [ 3000 6000 ]");
+  const auto graph =
+      bench.folder.write("play.yaml",
+                         "bodeflow: 1\nrun: {clock: realtime, chunk: 256, duration: 0.3 s}\nblocks:\n"
+                         "  sine: {block: generators.sine, sample_rate: 48 kHz, frequency: 1 kHz}\n"
+                         "  dac: {block: acquisition.alsa_playback, device: loop, buffer: 16384, lead: 12000, on_gap: mark}\n"
+                         "connections:\n  - sine -> dac\n");
+  const auto results = bench.results({graph.string()});
+  CHECK(results["dac"]["attributes"]["underruns"] == 2);
+  CHECK(results["dac"]["attributes"]["missing"].get<long>() >= 2 * 12000);
+  CHECK(results["dac.gaps"]["attributes"]["cause"] == "underrun");
 }
 
 TEST_CASE("a lead that the round trip outlasts is refused, and lines that the coupling turns are warned of") {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "connection_parameters.hpp"
+#include "line_time.hpp"
 #include "records/signals.hpp"
 #include "register_map_file.hpp"
 #include "register_value.hpp"
@@ -93,6 +94,7 @@ void ModbusBlock::configure(const Parameters& p) {
   if (setup_.measurements.empty()) fail("measurements is empty, allowed: at least one register");
   select_feedback(p.texts("feedback"));
   check_map();
+  check_line();
   change(p);
 }
 
@@ -143,11 +145,34 @@ void ModbusBlock::check_map() const {
   if (!map.find(kWatchdog)) {
     fail(map.file + " has no register 'watchdog': the drive would run on when this program ends; allowed: drives: false");
   }
+  check_watchdog(map.registers[*map.find(kWatchdog)]);
+  if (setup_.arm_trace && !(map.trace && map.trace->arm)) fail("arm_trace: " + map.file + " has no trace with 'arm'");
+}
+
+void ModbusBlock::check_watchdog(const Register& r) const {
   if (setup_.watchdog_s * poll_hz_ < kFewestPeriods) {
     fail("watchdog is " + short_number(setup_.watchdog_s * 1e3) + " ms, allowed at poll_rate " + short_number(poll_hz_) +
          " Hz: at least three periods, " + short_number(kFewestPeriods / poll_hz_ * 1e3) + " ms");
   }
-  if (setup_.arm_trace && !(map.trace && map.trace->arm)) fail("arm_trace: " + map.file + " has no trace with 'arm'");
+  const double value = watchdog_value(r, setup_.watchdog_s);
+  if (value < r.minimum || value > r.maximum) {
+    fail("watchdog is " + quantity(value, r) + ", allowed by " + setup_.map.file + ": " + short_number(r.minimum) + " to " +
+         quantity(r.maximum, r));
+  }
+}
+
+/// A serial line must have the time for all that a cycle asks.
+void ModbusBlock::check_line() const {
+  if (setup_.endpoint.tcp) return;
+  std::vector<std::size_t> read = setup_.measurements;
+  for (const char* name : {kStatusword, kFaultCode}) {
+    if (const auto place = setup_.map.find(name)) read.push_back(*place);
+  }
+  const double least_s = line_time(setup_.map, setup_.set_points, read, setup_.endpoint.baud);
+  if (least_s * poll_hz_ <= 1.0) return;
+  fail("a cycle takes " + short_number(least_s * 1e3) + " ms on a line at " + std::to_string(setup_.endpoint.baud) +
+       " baud, poll_rate " + short_number(poll_hz_) + " Hz leaves " + short_number(1e3 / poll_hz_) + " ms; allowed: at most " +
+       short_number(1.0 / least_s, 3) + " Hz, or fewer registers, or a faster line");
 }
 
 void ModbusBlock::resolve(Facts& f) {

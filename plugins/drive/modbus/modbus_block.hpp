@@ -30,6 +30,8 @@ class ModbusBlock final : public Block {
   std::vector<std::size_t> select(const std::vector<std::string>& names, const char* parameter, bool writable) const;
   void select_feedback(const std::vector<std::string>& names);
   void check_map() const;
+  void check_watchdog(const Register& r) const;
+  void check_line() const;
   void check_set_points(const StreamFacts& u) const;
   void take_set_points(Io& io, std::size_t n);
   void write(Io& io, std::size_t n) const;

@@ -6,6 +6,10 @@
 
 namespace bodeflow::drive::modbus {
 
+/// Words in one question, by the protocol.
+inline constexpr int kMostRead = 125;
+inline constexpr int kMostWritten = 123;
+
 /// Registers that one question covers: neighbours without a gap.
 struct RegisterGroup {
   struct Member {

@@ -158,6 +158,9 @@ class MapReader {
       }
       if (!number) continue;
       if (const auto words = encoded(r, *number); !words) y_.wrong(value, what + ": " + words.error().text);
+      if (writable && (*number < r.minimum || *number > r.maximum))
+        y_.wrong(value, what + ": " + r.name + " is " + quantity(*number, r) +
+                            ", allowed by its limits: " + records::short_number(r.minimum) + " to " + quantity(r.maximum, r));
       all.push_back({*place, *number});
     }
     return all;
@@ -222,7 +225,7 @@ class MapReader {
     };
     check(kControlword, true, true, true);
     check(kStatusword, true, false, true);
-    check(kFaultCode, false, false, false);
+    check(kFaultCode, false, false, true);
     check(kWatchdog, false, false, false);
     const auto watchdog = map_.find(kWatchdog);
     if (!watchdog) return;

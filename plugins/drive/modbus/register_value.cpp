@@ -78,4 +78,8 @@ Expected<std::array<std::uint16_t, 2>> encoded(const Register& r, double value) 
   return std::array<std::uint16_t, 2>{low, high};
 }
 
+double watchdog_value(const Register& r, double seconds) {
+  return r.unit == "ms" ? seconds * 1e3 : r.unit == "us" ? seconds * 1e6 : seconds;
+}
+
 }  // namespace bodeflow::drive::modbus

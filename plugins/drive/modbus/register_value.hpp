@@ -17,4 +17,7 @@ double decoded(const Register& r, const std::uint16_t* words);
 /// The words of a value, rounded to the nearest number that the register can hold. Errors: not finite, beyond the encoding.
 numerics::Expected<std::array<std::uint16_t, 2>> encoded(const Register& r, double value);
 
+/// A time as a number in the unit of that register: s, ms or us.
+double watchdog_value(const Register& r, double seconds);
+
 }  // namespace bodeflow::drive::modbus

@@ -16,7 +16,6 @@ using numerics::Expected;
 using numerics::refused;
 using records::short_number;
 
-constexpr int kMostRead = 125, kMostWritten = 123;  // words in one question, by the protocol
 constexpr auto kStopPoll = std::chrono::milliseconds(5);
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -86,10 +85,12 @@ Expected<void> Session::program_watchdog() {
   const auto place = s_.map.find(kWatchdog);
   if (!place) return refused(s_.map.file + " has no register 'watchdog': the drive would run on when this program ends");
   const Register& r = s_.map.registers[*place];
-  double wanted = s_.watchdog_s;
-  // The register's own unit, as it is a time: s, ms, us.
-  if (r.unit == "ms") wanted *= 1e3;
-  if (r.unit == "us") wanted *= 1e6;
+  const double wanted = watchdog_value(r, s_.watchdog_s);
+  const auto words = encoded(r, wanted);
+  if (words && !(decoded(r, words->data()) > 0.0)) {
+    return refused(name_of(r) + " can't hold " + quantity(wanted, r) +
+                   ": it would be 0, and the drive would run on when this program ends");
+  }
   return write_verified({*place, wanted}, "the drive's communication watchdog");
 }
 
@@ -256,8 +257,8 @@ Expected<void> Session::stop_steps() {
 Stopped Session::stop() {
   if (!s_.drives || !has_written_) return {true, "nothing was written to the drive"};
   Expected<void> stopped = stop_steps();
-  if (!stopped && link_->broken()) {
-    const auto connected = link_->reconnect();
+  if (!stopped) {
+    const Expected<void> connected = link_->broken() ? link_->reconnect() : Expected<void>{};
     stopped = connected ? stop_steps() : connected;
   }
   if (stopped) return {true, "the drive was stopped and confirms " + std::string(name_of(polled_.state))};

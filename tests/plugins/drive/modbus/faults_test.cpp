@@ -178,6 +178,15 @@ TEST_CASE("fault: a drive whose watchdog does not take its value is not enabled"
   CHECK_FALSE(bench.output_stage_on());
 }
 
+TEST_CASE("fault: a watchdog register that would become 0 by rounding is refused and the drive is not enabled") {
+  DriveBench bench;
+  SessionSetup setup = bench.setup();
+  setup.map.registers[setup.map.find("watchdog").value()].scale = 5000.0;
+  DriveClient client(setup);
+  CHECK_THAT(client.failure(), Contains("watchdog (holding register 0x0012) can't hold 800 ms: it would be 0"));
+  CHECK_FALSE(bench.output_stage_on());
+}
+
 TEST_CASE("fault: a drive that somebody else runs is left alone") {
   DriveBench bench;
   DriveClient first(bench.setup());

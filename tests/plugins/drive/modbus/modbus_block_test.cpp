@@ -102,6 +102,25 @@ TEST_CASE("modbus block: a watchdog of less than three periods is refused") {
   CHECK(refusal_of([&] { d.configure(); }) == "watchdog is 50 ms, allowed at poll_rate 50 Hz: at least three periods, 60 ms");
 }
 
+TEST_CASE("modbus block: a watchdog beyond the limits of its register is refused") {
+  Driver d;
+  d.set("watchdog", 12.0);
+  CHECK(refusal_of([&] { d.configure(); }) == "watchdog is 12000 ms, allowed by " + kMap + ": 10 to 10000 ms");
+}
+
+TEST_CASE("modbus block: a cycle that takes longer on a serial line than a period of polling is refused") {
+  Driver d;
+  d.set("connection", "rtu").set("device", std::string("/dev/ttyUSB0")).set("baud", std::int64_t{9600});
+  // set point 9 + 4 + 8 characters, controlword 16, statusword to speed 13 + 8, torque 13 + 4: 75 of 11 bits, and 8 silences
+  // of 3.5
+  CHECK(refusal_of([&] { d.configure(); }) ==
+        "a cycle takes 118.021 ms on a line at 9600 baud, poll_rate 50 Hz leaves 20 ms; allowed: at most 8.47 Hz, or fewer "
+        "registers, or a faster line");
+  Driver fast;
+  fast.set("connection", "rtu").set("device", std::string("/dev/ttyUSB0")).set("baud", std::int64_t{1'000'000});
+  CHECK(refusal_of([&] { fast.configure(); }) == "no failure");
+}
+
 TEST_CASE("modbus block: a clock that does not pace and chunks of several samples are refused before anything is written") {
   Driver d;
   d.configure();

@@ -72,6 +72,10 @@ TEST_CASE("each error of a register map has its line and column and says what wa
         "map.yaml:7:27: identity: 'vendor' is no register, allowed: statusword");
   CHECK(problem(kHead + kWords + "setup: {statusword: 1}\n") ==
         "map.yaml:7:9: setup: 'statusword' can't be written, allowed: controlword");
+  CHECK(problem(kHead + kWords + "  ramp: {address: 5, access: both, limits: [1, 9], safe: 1}\nsetup: {ramp: 10}\n") ==
+        "map.yaml:8:15: setup: ramp is 10, allowed by its limits: 1 to 9");
+  CHECK(problem(kHead + kWords + "  fault_code: {address: 5, type: float32}\n") ==
+        "map.yaml:5:3: register 'fault_code', allowed: type uint16 without scale");
   CHECK(problem(kHead + kWords + "setup: {controlword: 70000}\n") ==
         "map.yaml:7:22: setup: controlword (holding register 0x0001) is to be 70000, allowed as uint16: 0 to 65535");
 }

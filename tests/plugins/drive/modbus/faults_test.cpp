@@ -96,8 +96,10 @@ TEST_CASE("fault: a measured value outside of its limits ends in a quick stop th
   DriveClient client(bench.setup());
   REQUIRE(client.run_up() == "");
   bench.server().with_drive([](auto& d) { d.show_speed(2500.0); });
+  const std::int64_t cycles = client.poller().counts().cycles;
   CHECK_THAT(client.failure(),
              Contains("limit violated: speed (holding register 0x0032) is 2500 rpm, allowed: -1800 to 1800 rpm"));
+  CHECK(client.poller().counts().cycles <= cycles + 1);  // one that had read before
   bench.server().with_drive([](auto& d) { d.show_speed(std::nullopt); });
   CHECK(client.poller().stop().confirmed);
   CHECK(bench.stops());

@@ -65,6 +65,20 @@ class Bench {
   const Folder folder;
 };
 
+/// A column of a CSV text below its header.
+std::vector<double> column(const std::string& text, std::size_t index) {
+  std::vector<double> values;
+  std::istringstream rows(text);
+  std::string row;
+  std::getline(rows, row);
+  while (std::getline(rows, row)) {
+    std::istringstream fields(row);
+    for (std::size_t i = 0; i <= index; ++i) std::getline(fields, row, ',');
+    values.push_back(std::stod(row));
+  }
+  return values;
+}
+
 /// b0 .. a2 of the section below, at z.
 constexpr double kB[] = {0.02, 0.04, 0.02}, kA[] = {-1.56, 0.64};
 const std::string kSection = "b [ 0.02 0.04 0.02 ] a [ -1.56 0.64 ]";
@@ -136,22 +150,49 @@ TEST_CASE("overruns and underruns injected into a measurement are counted exactl
   CHECK(results["card.gaps"]["attributes"]["cause"] == "overrun");
 }
 
+TEST_CASE("what is captured answers what is played sample by sample on each channel behind an overrun too") {
+  const Bench bench("delay 20 overruns [ 9000 ]");
+  const auto graph = bench.folder.write(
+      "stereo.yaml",
+      "bodeflow: 1\nrun: {clock: realtime, chunk: 300, duration: 0.4 s, seed: 1}\nblocks:\n"
+      "  u: {block: generators.multisine, sample_rate: 48 kHz, period: 4800, lines: {first: 1, last: 2000}, inputs: 2, "
+      "experiment_periods: 4, rms: 0.1}\n"
+      "  card: {block: acquisition.alsa_duplex, device: loop, buffer: 16384, lead: 1000, on_gap: mark, capture: {channels: 2}}\n"
+      "  file: {block: output.csv, file: x.csv}\n"
+      "  other: {block: output.csv, file: y.csv}\n"
+      "connections:\n  - u -> card\n  - card.played -> file\n  - card.captured -> other\n");
+  const auto results = bench.results({graph.string()});
+  const auto position = results["card.gaps"]["attributes"]["position"].get<std::size_t>();
+  for (const std::size_t channel : {1, 2}) {
+    const auto played = column(bench.folder.read("out/x.csv"), channel),
+               captured = column(bench.folder.read("out/y.csv"), channel);
+    REQUIRE(captured.size() == 19200);
+    REQUIRE(played.size() == 19200);
+    std::size_t wrong = 0, loud = 0;
+    for (std::size_t n = 0; n < captured.size(); ++n) {
+      const bool begun = n >= 20 && (n < position || n >= position + 20);
+      wrong += std::abs(captured[n] - (begun ? played[n - 20] : 0.0)) > 0x1p-31;
+      loud += std::abs(played[n]) > 0.01;
+    }
+    CHECK(wrong == 0);
+    CHECK(loud > 10000);
+  }
+}
+
 TEST_CASE("an overrun of a capture is marked at its place with the samples that are missing") {
   const Bench bench("ramp 1 overruns [ 6000 12000 ]");
   const auto results = bench.results({bench.capture("on_gap: mark")});
   CHECK(results["adc"]["attributes"]["overruns"] == 2);
 
   std::vector<long> ramp;
-  std::istringstream rows(bench.folder.read("out/x.csv"));
-  std::string row;
-  std::getline(rows, row);
-  while (std::getline(rows, row)) ramp.push_back(std::lround(32768 * std::stod(row.substr(row.find(',') + 1))));
+  for (const double value : column(bench.folder.read("out/x.csv"), 1)) ramp.push_back(std::lround(32768 * value));
   REQUIRE(ramp.size() == 24000);
   std::map<std::size_t, long> jumps;
   for (std::size_t n = 1; n < ramp.size(); ++n)
     if (const long step = (ramp[n] - ramp[n - 1] + 32768) % 32768; step != 1) jumps[n] = step - 1;
 
   std::istringstream lines(bench.folder.read("out/gaps.jsonl"));
+  std::string row;
   std::size_t marked = 0;
   while (std::getline(lines, row)) {
     const auto gap = json::parse(row)["attributes"];
@@ -267,9 +308,15 @@ TEST_CASE("a lead that the round trip outlasts is refused, and lines that the co
 TEST_CASE("Ctrl-C ends a run on a device at once and keeps what it gave") {
   const Bench bench("ramp 1");
   const std::string graph = bench.capture("format: s16", "60 s");
-  const auto ended = bodeflow::test::run_program(
-      {"timeout", "--preserve-status", "-s", "INT", "0.6", BODEFLOW_BUILD_DIR "/bin/bodeflow", "run", graph, "--out", "out"},
-      bench.folder.path(), {"ALSA_CONFIG_PATH=" + (bench.folder.path() / "asound.conf").string()});
+  // Interrupted as soon as there is something to keep.
+  const std::string command =
+      "\"$0\" run \"$1\" --out out & n=0; while [ ! -s out/x.csv ] && [ $n -lt 400 ]; do sleep 0.05; n=$((n + 1)); done; "
+      "kill -INT $!; wait $!";
+  const auto ended =
+      bodeflow::test::run_program({"sh", "-c", command, BODEFLOW_BUILD_DIR "/bin/bodeflow", graph}, bench.folder.path(),
+                                  {"ALSA_CONFIG_PATH=" + (bench.folder.path() / "asound.conf").string()});
   CHECK(ended.exit_code == 130);
-  CHECK(bench.folder.read("out/x.csv").size() > 1000);
+  const auto kept = column(bench.folder.read("out/x.csv"), 1).size();
+  CHECK(kept > 100);
+  CHECK(kept < 48000 * 30);
 }

@@ -148,6 +148,22 @@ TEST_CASE("losses that the time stamps show are marked at their places or end th
                       "kernel_buffers"));
 }
 
+TEST_CASE("what the kernel dropped while the network was away is counted exactly") {
+  const Folder folder;
+  IiodEmulator::Settings settings;
+  settings.hold_at = 10000;
+  settings.hold_s = 0.3;
+  const IiodEmulator iiod(settings);
+  const Ended ended =
+      capture(folder, iiod, "0.2 s",
+              {"blocks.adc.buffer=1000", "blocks.adc.kernel_buffers=10", "blocks.adc.timestamps=true", "blocks.adc.on_gap=mark"});
+  INFO(ended.err);
+  REQUIRE(ended.exit_code == 0);
+  const auto device = json::parse(folder.read("out/result.json"))["results"]["adc"]["attributes"];
+  CHECK(iiod.dropped() >= 20000);  // 0.3 s, less 0.1 s in the buffers
+  CHECK(device["missing"] == iiod.dropped());
+}
+
 TEST_CASE("channels come in SI units by kind and a calibration goes on from there") {
   const Folder folder;
   const IiodEmulator iiod;

@@ -190,6 +190,10 @@ std::string IiodEmulator::read_buffer(std::size_t bytes) {
   const auto count = static_cast<std::int64_t>(bytes / sample_bytes());
   const auto due = [&] { return static_cast<std::int64_t>((now_s() - started_s_) * rate_hz_); };
   const auto room = static_cast<std::int64_t>(kernel_buffers_ * buffer_samples_);
+  if (settings_.hold_at >= 0 && next_ >= settings_.hold_at && !held_) {
+    held_ = true;
+    for (const double until = now_s() + settings_.hold_s; !stopping_ && now_s() < until;) sleep_a_little();
+  }
   if (const std::int64_t lost = due() - room - next_; lost > 0) {
     dropped_ += lost;
     next_ += lost;

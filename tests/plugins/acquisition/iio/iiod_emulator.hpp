@@ -24,8 +24,10 @@ class IiodEmulator {
     std::vector<Loss> losses;    ///< samples that the converter leaves out
     std::int64_t pull_at = -1;   ///< the connection is cut before this index
     std::int64_t stall_at = -1;  ///< nothing comes from this index on
-    double slow_rate = 0.0;      ///< the rate that sampling_frequency gives, whatever was written; 0: as written
-    bool tells_rate = true;      ///< has sampling_frequency
+    std::int64_t hold_at = -1;   ///< the network is away for hold_s before this index
+    double hold_s = 0.0;
+    double slow_rate = 0.0;  ///< the rate that sampling_frequency gives, whatever was written; 0: as written
+    bool tells_rate = true;  ///< has sampling_frequency
   };
 
   explicit IiodEmulator(Settings settings);
@@ -63,6 +65,7 @@ class IiodEmulator {
   double rate_hz_ = 0.0, started_s_ = 0.0;
   std::int64_t next_ = 0;
   std::size_t next_loss_ = 0;
+  bool held_ = false;
   std::vector<int> sockets_;
   std::vector<std::thread> threads_;
 };

@@ -1,5 +1,6 @@
 #include "phases/services.hpp"
 
+#include <map>
 #include <mutex>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct Services::State {
   record::RunDirectory* directory = nullptr;
   std::vector<Message> messages;
   std::vector<std::pair<std::string, std::string>> inputs;
+  std::map<std::string, const void*, std::less<>> provided;
 };
 
 Services::Services(Echo echo) : state_(std::make_shared<State>()), host_(std::make_shared<HostServices>()) {
@@ -41,6 +43,16 @@ Services::Services(Echo echo) : state_(std::make_shared<State>()), host_(std::ma
     if (state->directory == nullptr) return std::string();
     return state->directory->output_path(block, name);
   };
+  host_->extension = [state = state_](std::string_view id) -> const void* {
+    const std::lock_guard lock(state->mutex);
+    const auto found = state->provided.find(id);
+    return found == state->provided.end() ? nullptr : found->second;
+  };
+}
+
+void Services::provide(std::string id, const void* service) {
+  const std::lock_guard lock(state_->mutex);
+  state_->provided[std::move(id)] = service;
 }
 
 void Services::attach(record::RunDirectory& directory) {

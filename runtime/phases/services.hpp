@@ -18,6 +18,8 @@ class Services {
 
   std::shared_ptr<const HostServices> host() const { return host_; }
   void attach(record::RunDirectory& directory);
+  /// Gives blocks another service by its id; it outlives them. Before any block is activated.
+  void provide(std::string id, const void* service);
 
  private:
   struct State;

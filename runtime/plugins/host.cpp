@@ -82,8 +82,13 @@ struct HostFunctions {
     if (id == nullptr) return nullptr;
     if (std::string_view(id) == BF_EXTENSION_LOG) return &kLog;
     if (std::string_view(id) == BF_EXTENSION_FILES) return &kFiles;
-    if (std::string_view(id) == BF_EXTENSION_PARTS && Host::of(*host).parts_ != nullptr) return &kParts;
-    return nullptr;
+    const Host& self = Host::of(*host);
+    if (std::string_view(id) == BF_EXTENSION_PARTS && self.parts_ != nullptr) return &kParts;
+    try {
+      return self.services_ != nullptr && self.services_->extension ? self.services_->extension(id) : nullptr;
+    } catch (...) {
+      return nullptr;
+    }
   }
 
  private:

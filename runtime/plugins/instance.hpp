@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <string_view>
 
 #include "plugins/registry.hpp"
 
@@ -15,6 +16,8 @@ struct HostServices {
   std::function<void(const std::string& block, const std::string& path)> note_input;
   /// Absolute path for a block's output file, or the reason why not; absent during a check.
   std::function<tl::expected<std::string, std::string>(const std::string& block, const std::string& name)> output_path;
+  /// A service of the runner's own by its id ("bodeflow.transport/1"), which outlives the blocks, or null; may be absent.
+  std::function<const void*(std::string_view id)> extension;
 };
 
 /// Owned copy of bf_stream_facts.

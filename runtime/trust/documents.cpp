@@ -8,10 +8,9 @@ namespace {
 constexpr const char* kAllDomains = "<domains><id_range><min>0</min><max>232</max></id_range></domains>";
 
 std::string topic_rule(const char* name, const std::vector<std::string>& topics) {
-  std::string text = fmt::format("        <{}>\n          <topics>\n", name);
-  for (const std::string& topic : topics) text += fmt::format("            <topic>{}</topic>\n", topic);
-  return text +
-         fmt::format("          </topics>\n          <partitions><partition>*</partition></partitions>\n        </{}>\n", name);
+  std::string text = fmt::format("<{}>\n<topics>\n", name);
+  for (const std::string& topic : topics) text += fmt::format("<topic>{}</topic>\n", topic);
+  return text + fmt::format("</topics>\n<partitions><partition>*</partition></partitions>\n</{}>\n", name);
 }
 
 /// Without the fraction and the zone, which readers of these documents may not know.
@@ -22,27 +21,27 @@ std::string document_time(Time time) { return utc_text(time).substr(0, std::stri
 std::string governance_text() {
   return fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
 <dds>
-  <domain_access_rules>
-    <domain_rule>
-      {}
-      <allow_unauthenticated_participants>false</allow_unauthenticated_participants>
-      <enable_join_access_control>true</enable_join_access_control>
-      <discovery_protection_kind>ENCRYPT</discovery_protection_kind>
-      <liveliness_protection_kind>ENCRYPT</liveliness_protection_kind>
-      <rtps_protection_kind>NONE</rtps_protection_kind>
-      <topic_access_rules>
-        <topic_rule>
-          <topic_expression>*</topic_expression>
-          <enable_discovery_protection>true</enable_discovery_protection>
-          <enable_liveliness_protection>true</enable_liveliness_protection>
-          <enable_read_access_control>true</enable_read_access_control>
-          <enable_write_access_control>true</enable_write_access_control>
-          <metadata_protection_kind>NONE</metadata_protection_kind>
-          <data_protection_kind>ENCRYPT</data_protection_kind>
-        </topic_rule>
-      </topic_access_rules>
-    </domain_rule>
-  </domain_access_rules>
+<domain_access_rules>
+<domain_rule>
+{}
+<allow_unauthenticated_participants>false</allow_unauthenticated_participants>
+<enable_join_access_control>true</enable_join_access_control>
+<discovery_protection_kind>ENCRYPT</discovery_protection_kind>
+<liveliness_protection_kind>ENCRYPT</liveliness_protection_kind>
+<rtps_protection_kind>NONE</rtps_protection_kind>
+<topic_access_rules>
+<topic_rule>
+<topic_expression>*</topic_expression>
+<enable_discovery_protection>true</enable_discovery_protection>
+<enable_liveliness_protection>true</enable_liveliness_protection>
+<enable_read_access_control>true</enable_read_access_control>
+<enable_write_access_control>true</enable_write_access_control>
+<metadata_protection_kind>NONE</metadata_protection_kind>
+<data_protection_kind>ENCRYPT</data_protection_kind>
+</topic_rule>
+</topic_access_rules>
+</domain_rule>
+</domain_access_rules>
 </dds>
 )",
                      kAllDomains);
@@ -52,19 +51,19 @@ std::string permissions_text(const std::string& host, const std::string& lab, co
                              Time until) {
   return fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
 <dds>
-  <permissions>
-    <grant name="{0}">
-      <subject_name>CN={0},O={1}</subject_name>
-      <validity>
-        <not_before>{2}</not_before>
-        <not_after>{3}</not_after>
-      </validity>
-      <allow_rule>
-        {4}
-{5}{6}      </allow_rule>
-      <default>DENY</default>
-    </grant>
-  </permissions>
+<permissions>
+<grant name="{0}">
+<subject_name>CN={0},O={1}</subject_name>
+<validity>
+<not_before>{2}</not_before>
+<not_after>{3}</not_after>
+</validity>
+<allow_rule>
+{4}
+{5}{6}</allow_rule>
+<default>DENY</default>
+</grant>
+</permissions>
 </dds>
 )",
                      host, lab, document_time(from), document_time(until), kAllDomains, topic_rule("publish", topics),
@@ -83,7 +82,7 @@ std::vector<std::string> permitted_topics(const std::string& permissions_text) {
 }
 
 Expected<std::string> signed_text(const std::string& text, X509& authority, EVP_PKEY& authority_key) {
-  const int flags = PKCS7_DETACHED | PKCS7_TEXT | PKCS7_STREAM;
+  const int flags = PKCS7_DETACHED | PKCS7_TEXT | PKCS7_STREAM | PKCS7_NOSMIMECAP;
   const Bio in = reading(text), out = memory();
   const Pkcs7 signature(PKCS7_sign(&authority, &authority_key, nullptr, in.get(), flags));
   if (!signature || SMIME_write_PKCS7(out.get(), signature.get(), in.get(), flags) != 1)

@@ -14,6 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// They are sent in one datagram with the certificate and the participant's own data (transport::kSmallestSecureDatagram), which
+/// take 2.4 KB here and 3 KB with the longest names.
+constexpr std::size_t kMostPermissions = 4096;
+
 /// What signs: read from the folder.
 struct Authority {
   Certificate certificate;
@@ -105,6 +109,9 @@ Expected<std::vector<Archived>> bundle_of(const Files& files, const NewHost& hos
       signed_text(permissions_text(host.name, authority.lab(), host.topics, now - kBackdated, until + kBackdated),
                   *authority.certificate, *authority.key);
   if (!permissions) return tl::unexpected(permissions.error());
+  if (permissions->size() > kMostPermissions)
+    return tl::unexpected(fmt::format("the permissions of host '{}' have {} bytes, {} are allowed: give fewer or shorter topics",
+                                      host.name, permissions->size(), kMostPermissions));
   const auto governance = read_file(files.governance), revocations = read_file(files.revocations);
   if (!governance) return tl::unexpected(governance.error());
   if (!revocations) return tl::unexpected(revocations.error());

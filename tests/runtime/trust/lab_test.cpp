@@ -225,6 +225,19 @@ TEST_CASE("a host is trusted at most as long as the authority") {
   CHECK(add(made.lab.folder, host, kNow + 3650 * kDay).error() == "the lab's authority expired on 2037-01-12T08:00:00Z");
 }
 
+TEST_CASE("permissions that would not fit into a datagram of the handshake are refused") {
+  const Made made;
+  NewHost host = made.host(std::string(64, 'h'));
+  host.topics.assign(20, "bodeflow/speed_*");
+  CHECK(add(made.lab.folder, host, kNow));
+  host.name = "desk";
+  host.topics.assign(60, "bodeflow/speed_*");
+  host.bundle = made.path("desk.tar");
+  const std::string why = add(made.lab.folder, host, kNow).error();
+  CHECK(begins(why, "the permissions of host 'desk' have "));
+  CHECK(why.find(" bytes, 4096 are allowed: give fewer or shorter topics") != std::string::npos);
+}
+
 TEST_CASE("names and patterns that could mean something to a document or a folder are refused") {
   for (const char* name : {"", "a b", "a/b", "..", ".", "a,b", "a=b", "<a>", "a&b", "-a", "a.b", "a\n", "\xc3\xa4"})
     CHECK_FALSE(name_problem(name).empty());

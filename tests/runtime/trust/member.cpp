@@ -29,6 +29,7 @@
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -253,6 +254,7 @@ int main(int argc, char** argv) {
   leave("no security");
 #endif
   if (argc < 4) return 2;
+  fdds::Log::ClearConsumers();  // it would write to standard output, from a thread of its own
   Request request = parse(argc, argv);
   auto* participant =
       fdds::DomainParticipantFactory::get_instance()->create_participant(request.domain, participant_qos(request));

@@ -57,6 +57,7 @@ void AlsaCapture::activate(const Activation& a) {
 void AlsaCapture::reset() {
   running_ = false;
   base_ = 0;
+  breaks_ = BreakCounter();
   clock_.reset();
   report_ = DeviceReport();
   report_.device = card_.spec.device;
@@ -82,6 +83,7 @@ void AlsaCapture::process(Io& io) {
     if (!moved) fail(moved.error().text);
     decode_all(moved->frames, done, io);
     done += moved->frames;
+    breaks_.moved(moved->frames);
     if (moved->broken) break_off(io, done);
   }
   if (auto stamp = pcm_->stamp()) {
@@ -107,6 +109,7 @@ void AlsaCapture::break_off(Io& io, std::size_t offset) {
     fail(text_of(gap) + ": the samples were not taken in time; raise buffer or run.chunk, or set on_gap: mark to go on");
   begin();
   gap.missing = samples_missing(clock_, gap.position, rate_);
+  breaks_.broke();
   report_.count(gap);
   log_warning(text_of(gap));
   io.emit(gaps, gap_record(gap), offset);

@@ -33,6 +33,7 @@ class AlsaCapture final : public Block {
   bool running_ = false;
   std::int64_t base_ = 0;  // position of the first frame since the last start
   std::vector<std::uint8_t> bytes_;
+  BreakCounter breaks_;
   DeviceClock clock_;
   DeviceReport report_;
 };

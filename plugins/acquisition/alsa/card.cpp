@@ -49,6 +49,11 @@ void require_finite(std::span<const double> values, std::uint64_t first, int cha
        std::to_string(channel + 1) + " is " + number_text(*bad) + "; a converter takes finite values");
 }
 
+void BreakCounter::broke() {
+  constexpr int kMost = 8;
+  if (++breaks_ == kMost) fail("the device breaks off at each start, " + std::to_string(kMost) + " times in a row");
+}
+
 std::optional<std::int64_t> samples_missing(const DeviceClock& clock, std::int64_t position, const Rate& rate) {
   if (!clock.last()) return std::nullopt;
   const double due_s = clock.last()->time_s + static_cast<double>(position - clock.last()->position) / rate.hz();

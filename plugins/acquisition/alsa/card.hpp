@@ -23,6 +23,17 @@ unsigned whole_rate(const Rate& rate);
 /// Throws Failure for a sample that is not finite.
 void require_finite(std::span<const double> values, std::uint64_t first, int channel);
 
+/// Counts breaks between which no frame was moved: a device that breaks off eight times in a row will not recover.
+class BreakCounter {
+ public:
+  void moved(std::size_t frames) { breaks_ = frames > 0 ? 0 : breaks_; }
+  /// Throws Failure at the eighth.
+  void broke();
+
+ private:
+  int breaks_ = 0;
+};
+
 /// How long a device stood still: from where its last stamp puts sample `position` to now, in samples. None without a stamp.
 std::optional<std::int64_t> samples_missing(const DeviceClock& clock, std::int64_t position, const Rate& rate);
 

@@ -41,6 +41,7 @@ class AlsaDuplex final : public Block {
   std::optional<Duplex> duplex_;
   std::int64_t base_ = 0;  // position of the first frame since the last start
   std::vector<std::uint8_t> to_play_, played_, captured_;
+  BreakCounter breaks_;
   DeviceClock clock_;
   DeviceReport report_;
 };

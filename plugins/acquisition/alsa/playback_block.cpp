@@ -62,6 +62,7 @@ void AlsaPlayback::activate(const Activation& a) {
 void AlsaPlayback::reset() {
   running_ = false;
   base_ = 0;
+  breaks_ = BreakCounter();
   clock_.reset();
   report_ = DeviceReport();
   report_.device = card_.spec.device;
@@ -91,6 +92,7 @@ void AlsaPlayback::process(Io& io) {
     const auto moved = pcm_->write(bytes_.data(), wanted);
     if (!moved) fail(moved.error().text);
     done += moved->frames;
+    breaks_.moved(moved->frames);
     if (moved->broken) break_off(io, done);
   }
   if (auto stamp = pcm_->stamp()) {
@@ -119,6 +121,7 @@ void AlsaPlayback::break_off(Io& io, std::size_t offset) {
   const auto silence = static_cast<std::int64_t>(lead_);
   gap.missing = samples_missing(clock_, gap.position, rate_);
   if (gap.missing) *gap.missing += silence;
+  breaks_.broke();
   report_.count(gap);
   log_warning(text_of(gap));
   io.emit(gaps, gap_record(gap), offset);

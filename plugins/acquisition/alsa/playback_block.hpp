@@ -36,6 +36,7 @@ class AlsaPlayback final : public Block {
   bool running_ = false;
   std::int64_t base_ = 0;  // position of the first frame behind the silence of the last start
   std::vector<std::uint8_t> bytes_;
+  BreakCounter breaks_;
   DeviceClock clock_;
   DeviceReport report_;
 };

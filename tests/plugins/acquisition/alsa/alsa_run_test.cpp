@@ -1,13 +1,19 @@
 // The ALSA blocks in whole runs, on the sound card of loop_pcm.cpp.
 #include <complex>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
 
+#include "acquisition/alsa/pcm.hpp"
 #include "catch.hpp"
 #include "system/command.hpp"
 
+using bodeflow::acquisition::Direction;
+using bodeflow::acquisition::Pcm;
+using bodeflow::acquisition::PcmSpec;
+using bodeflow::acquisition::SampleFormat;
 using bodeflow::test::Ended;
 using bodeflow::test::Folder;
 using bodeflow::test::run_bodeflow;
@@ -215,6 +221,12 @@ TEST_CASE("an overrun ends a run that does not mark it: block, place, cause") {
   CHECK(json::parse(bench.folder.read("out/result.json"))["status"] == "failed");
 }
 
+TEST_CASE("a device that breaks off at each start ends a run that marks gaps") {
+  const Bench bench("overruns [ 0 0 0 0 0 0 0 0 0 0 ]");
+  CHECK_THAT(bench.run({bench.capture("on_gap: mark")}).err,
+             Contains("block 'adc': the device breaks off at each start, 8 times in a row"));
+}
+
 TEST_CASE("a device that stops delivering ends the run after its timeout") {
   const Bench bench("stall 5000");
   const Ended ended = bench.run({bench.capture("timeout: 200 ms")});
@@ -224,18 +236,27 @@ TEST_CASE("a device that stops delivering ends the run after its timeout") {
 
 TEST_CASE("what a sound device can't do is refused with what it can") {
   const Bench bench("");
-  const auto said = [&](const std::string& parameters) { return bench.run({bench.capture(parameters)}).err; };
-  CHECK_THAT(said("format: s24"), Contains("sound device 'loop' (capture) has no format s24; allowed: s16, s32"));
-  CHECK_THAT(said("channels: 9"), Contains("sound device 'loop' (capture) does not run with 9 channels; allowed: 1 to 4"));
-  CHECK_THAT(said("period: 16384"), Contains("a buffer of 16384 frames with a period of 16384; allowed: at least two periods"));
-  const auto other = [&](const std::string& name, const std::string& value) {
-    return bench.run({bench.capture("format: s16"), "--set", "blocks.adc." + name + "=" + value}).err;
+  setenv("ALSA_CONFIG_PATH", (bench.folder.path() / "asound.conf").c_str(), 1);
+  const auto said = [](const std::function<void(PcmSpec&)>& change) {
+    PcmSpec spec;
+    spec.device = "loop";
+    change(spec);
+    const auto pcm = Pcm::open(spec);
+    return pcm ? std::string("no refusal") : pcm.error().text;
   };
-  CHECK_THAT(other("rate", "44.1 kHz"),
-             Contains("sound device 'loop' (capture) does not run at 44100 Hz; allowed: rates of its own from 8000 to 96000 Hz"));
-  CHECK_THAT(other("device", "nowhere"),
-             Contains("sound device 'nowhere' (capture) can't be opened: No such file or directory; `arecord "
-                      "-l` lists what there is"));
+  CHECK(said([](PcmSpec&) {}) == "no refusal");
+  CHECK(said([](PcmSpec& s) { s.format = SampleFormat::s24; }) ==
+        "sound device 'loop' (capture) has no format s24; allowed: s16, s32");
+  CHECK(said([](PcmSpec& s) { s.channels = 9; }) ==
+        "sound device 'loop' (capture) does not run with 9 channels; allowed: 1 to 4");
+  CHECK(said([](PcmSpec& s) { s.rate_hz = 44100; }) ==
+        "sound device 'loop' (capture) does not run at 44100 Hz; allowed: rates of its own from 8000 to 96000 Hz");
+  CHECK(said([](PcmSpec& s) {
+          s.device = "nowhere";
+          s.direction = Direction::playback;
+        }) == "sound device 'nowhere' (playback) can't be opened: No such file or directory; `aplay -l` lists what there is");
+  CHECK_THAT(bench.run({bench.capture("period: 16384")}).err,
+             Contains("a buffer of 16384 frames with a period of 16384; allowed: at least two periods"));
 }
 
 TEST_CASE("a device is refused in simulated time") {

@@ -44,7 +44,7 @@ double now_s() {
 }
 
 struct Side {
-  bool open = false, armed = false;
+  bool open = false, armed = false, broken = false;
   double opened_s = 0.0, started_s = -1.0;  // started: -1 while it stands still
   long moved = 0;                           // frames since prepare
   std::size_t next_break = 0;
@@ -113,7 +113,7 @@ int prepare(snd_pcm_ioplug_t* io) {
   const std::lock_guard lock(card().mutex);
   card().rate = io->rate;
   Side& s = side(io);
-  s.armed = false;
+  s.armed = s.broken = false;
   s.started_s = -1;
   s.moved = 0;
   if (s.opened_s == 0.0) s.opened_s = now_s();
@@ -138,10 +138,12 @@ snd_pcm_sframes_t pointer(snd_pcm_ioplug_t* io) {
   const std::lock_guard lock(card().mutex);
   Card& c = card();
   Side& s = side(io);
+  if (s.broken) return -EPIPE;
   if (s.started_s < 0) return 0;
   const auto& breaks = captures(io) ? c.settings.overruns : c.settings.underruns;
   if (s.next_break < breaks.size() && static_cast<double>(c.since_opening(s, now_s())) >= breaks[s.next_break]) {
     ++s.next_break;
+    s.broken = true;
     return -EPIPE;
   }
   long at = c.frames(s);

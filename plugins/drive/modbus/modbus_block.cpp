@@ -65,7 +65,8 @@ void ModbusBlock::describe(Describe& d) {
   d.parameter("feedback", std::vector<std::string>{}).doc("those of measurements that port `feedback` has; without it all");
   d.parameter("drives", true).doc("false: nothing is ever written, the drive is only looked at");
   d.parameter("command", "enable").choices({"enable", "disable", "quick_stop"}).live().doc("what the drive is to do");
-  d.parameter("reset_faults", false).doc("a fault that is there at the start is reset; without it the run ends");
+  d.parameter("reset_faults", false)
+      .doc("a fault that is there before the drive is enabled is reset; without it, and for any later fault, the run ends");
   d.parameter("watchdog", 0.5)
       .unit("s")
       .range(0.001, 60)

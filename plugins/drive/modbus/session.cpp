@@ -151,9 +151,13 @@ Expected<void> Session::poll() {
       values_[member.index] = decoded(s_.map.registers[member.place], to.data() + member.offset);
     }
   }
-  polled_.statusword = static_cast<std::uint16_t>(values_[0]);
   std::copy_n(values_.begin() + 1, polled_.measurements.size(), polled_.measurements.begin());
   if (values_.size() > polled_.measurements.size() + 1) polled_.fault_code = values_.back();
+  return take_statusword(values_[0]);
+}
+
+Expected<void> Session::take_statusword(double value) {
+  polled_.statusword = static_cast<std::uint16_t>(value);
   const auto state = state_of(polled_.statusword);
   if (!state) {
     return refused(name_of(s_.endpoint) + ": statusword " + hexadecimal(polled_.statusword) +
@@ -161,6 +165,13 @@ Expected<void> Session::poll() {
   }
   polled_.state = *state;
   return {};
+}
+
+/// The statusword alone: a stop does not depend on what else can be read.
+Expected<void> Session::read_state() {
+  const auto word = read_value(*link_, s_.map.registers[statusword_]);
+  if (!word) return tl::make_unexpected(word.error());
+  return take_statusword(*word);
 }
 
 Expected<void> Session::check_measurements() const {
@@ -180,7 +191,7 @@ Expected<void> Session::judge(DriveCommand command, DriveState before) {
   const DriveState state = polled_.state;
   const std::string drive = name_of(s_.endpoint) + ": the drive ";
   const bool fails = state == DriveState::fault || state == DriveState::fault_reaction_active;
-  if (fails && was_enabled_) return refused(drive + "has stopped by itself, " + fault());
+  if (fails && (was_enabled_ || prepared_)) return refused(drive + "has stopped by itself, " + fault());
   if (command != DriveCommand::enable) return {};
   if (fails && !s_.reset_faults) return refused(drive + "is in " + fault() + "; allowed: none, or reset_faults: true");
   if (state == DriveState::operation_enabled) {
@@ -238,7 +249,7 @@ Expected<void> Session::stop_steps() {
   if (auto written = write_value(controlword_, kQuickStop); !written) return written;
   const double begun_s = now_s();
   while (now_s() - begun_s < s_.stop_time_s) {
-    if (auto read = poll(); !read) return read;
+    if (auto read = read_state(); !read) return read;
     if (is_off(polled_.state)) break;
     if (polled_.state == DriveState::quick_stop_active) {
       const auto there = stands();
@@ -248,7 +259,7 @@ Expected<void> Session::stop_steps() {
     std::this_thread::sleep_for(kStopPoll);
   }
   if (auto written = write_value(controlword_, kDisableVoltage); !written) return written;
-  if (auto read = poll(); !read) return read;
+  if (auto read = read_state(); !read) return read;
   if (is_off(polled_.state)) return {};
   return refused("the drive is in " + std::string(name_of(polled_.state)) + " " + short_number(now_s() - begun_s) +
                  " s after quick stop and disable voltage");

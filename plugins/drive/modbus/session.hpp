@@ -71,6 +71,8 @@ class Session {
   numerics::Expected<std::uint16_t> next_word(DriveCommand command);
   numerics::Expected<void> write_set_points(DriveCommand command, const std::vector<double>& set_points);
   numerics::Expected<void> poll();
+  numerics::Expected<void> take_statusword(double value);
+  numerics::Expected<void> read_state();
   numerics::Expected<void> judge(DriveCommand command, DriveState before);
   numerics::Expected<void> check_measurements() const;
   numerics::Expected<void> stop_steps();

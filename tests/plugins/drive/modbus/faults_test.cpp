@@ -116,6 +116,18 @@ TEST_CASE("fault: a fault of the drive is named and its output stage is off") {
   CHECK_FALSE(bench.output_stage_on());
 }
 
+TEST_CASE("fault: a fault on the way to operation_enabled is not reset but ends the run") {
+  DriveBench bench;
+  SessionSetup setup = bench.setup();
+  setup.map.setup.clear();  // without its mode the simulated drive stays in switched_on
+  setup.reset_faults = true;
+  DriveClient client(setup);
+  REQUIRE(client.run_until([](const Polled& p) { return p.state == DriveState::switched_on; }) == "");
+  bench.server().with_drive([](auto& d) { d.trip(0x2340); });
+  CHECK_THAT(client.failure(), Contains("the drive has stopped by itself, fault 0x2340: short circuit"));
+  CHECK(bench.fault_code() == 0x2340);
+}
+
 TEST_CASE("fault: a client that hangs is stopped by the drive's watchdog and told so") {
   DriveBench bench;
   DriveClient client(bench.setup());

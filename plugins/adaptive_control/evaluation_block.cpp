@@ -5,11 +5,13 @@
 #include <numbers>
 
 #include "block_settings.hpp"
+#include "numbers_in_text.hpp"
 
 namespace bodeflow::adaptive_control {
 namespace {
 
 constexpr int kCurvePoints = 200;
+constexpr std::size_t kMostActions = 500;  // of safety nets that a record holds
 
 template <class T>
 void append(std::vector<T>& to, std::span<const T> from) {
@@ -30,8 +32,9 @@ void Evaluation::describe(Describe& d) {
   d.doc(
       "The record `adaptive_run` holds all samples; `bodeflow report` draws them as the figures of the thesis: command and "
       "output, control signal, Nyquist curve with the estimates, controllers over time. rms is that of y - desired in the "
-      "windows. With the plant given, the error of the estimates is told as well. Keeps all samples in memory: for runs of up to "
-      "some million.");
+      "windows. With the plant given, the error of the estimates is told as well; with the logs of estimator and design, what "
+      "their "
+      "safety nets did and why. Keeps all samples in memory: for runs of up to some million.");
   d.parameter("windows", std::vector<double>{}).unit("s").doc("times; the tracking error is given from each to the next");
   d.parameter("start", 0.0).unit("s").range(0, 1e12).doc("largest |u| and overshoot are counted from here on");
   d.parameter("frequencies", std::vector<double>{}).unit("rad/s").doc("of the estimates at `response`");
@@ -43,6 +46,8 @@ void Evaluation::describe(Describe& d) {
   d.stream_in(response).optional().doc("estimates");
   d.stream_in(coefficients).optional().doc("controllers");
   d.stream_in(beside).optional().doc("output of another loop on the same plant, drawn beside");
+  d.message_in(estimator_log).optional().record_type("net_action").doc("safety nets of the estimator, for the list of them");
+  d.message_in(design_log).optional().record_type("net_action").doc("safety nets of the design, for the list of them");
   d.message_out(result).record_type("adaptive_run");
 }
 
@@ -75,6 +80,8 @@ void Evaluation::reset() {
   command_.clear(), y_.clear(), u_.clear(), desired_.clear(), beside_.clear();
   response_.assign(omega_.size(), {});
   coefficients_.assign(coefficient_names_.size(), {});
+  actions_.clear();
+  more_actions_ = 0;
 }
 
 void Evaluation::process(Io& io) {
@@ -87,6 +94,36 @@ void Evaluation::process(Io& io) {
   for (std::size_t c = 0; c < coefficients_.size() && io.connected(coefficients); ++c) {
     append(coefficients_[c], io.read(coefficients, static_cast<int>(c)));
   }
+}
+
+void Evaluation::receive(int, const RecordView& record, Io&) {
+  if (record.type() != "net_action") fail("a record '" + std::string(record.type()) + "'; needed: net_action");
+  if (actions_.size() == kMostActions) {
+    ++more_actions_;
+    return;
+  }
+  const auto text = [&](const char* name) { return std::string(record.text(name).value_or("")); };
+  const bool begins = text("action") == "begins";
+  std::string told = text("net") + " " + text("action");
+  if (const auto omega = record.number("frequency")) told += " at " + text_of(*omega) + " rad/s";
+  if (begins) told += ": " + text("cause");
+  const auto value = record.number("value"), limit = record.number("limit");
+  if (begins && value && limit) told += " (" + text_of(*value) + ", limit " + text_of(*limit) + ")";
+  actions_.push_back({record.number("sample").value_or(0.0), told});
+}
+
+void Evaluation::add_actions(RecordBuilder& r) {
+  if (actions_.empty()) return;
+  std::stable_sort(actions_.begin(), actions_.end(), [](const Action& a, const Action& b) { return a.sample < b.sample; });
+  std::vector<std::string> texts;
+  std::vector<double> times;
+  for (const Action& action : actions_) {
+    texts.push_back(action.text);
+    times.push_back(action.sample * sample_time_);
+  }
+  r.set("net_actions", texts);
+  put(r, "net_action_time", "s", times);
+  if (more_actions_ > 0) r.set("more_net_actions", more_actions_);
 }
 
 double Evaluation::rms(std::size_t from, std::size_t to) const {
@@ -104,7 +141,10 @@ void Evaluation::add_windows(RecordBuilder& r) const {
     const std::size_t from = at(windows_s_[i]), to = at(windows_s_[i + 1]);
     if (to > from) errors.push_back(rms(from, to));
   }
-  if (!errors.empty()) r.set("rms_in_windows", errors);
+  if (!errors.empty()) {
+    r.set("windows", windows_s_);
+    r.set("rms_in_windows", errors);
+  }
   if (!desired_.empty() && !y_.empty()) r.set("rms", rms(0, y_.size()));
 }
 
@@ -154,6 +194,7 @@ void Evaluation::finish(Io& io) {
     }
   }
   add_truth(r);
+  add_actions(r);
   io.emit(result, r);
 }
 

@@ -69,6 +69,26 @@ TEST_CASE("examples 2 and 3 with all nets keep a unit load as the known plant's 
   }
 }
 
+TEST_CASE("the report of an adaptive run lists what the safety nets did in order of time, with the cause") {
+  const Folder folder;
+  const auto ended =
+      run_bodeflow({"run", BODEFLOW_SOURCE_DIR "/graphs/kallen_1992/example_1_noise.yaml", "--out", "out"}, folder.path());
+  REQUIRE(ended.exit_code == 0);
+  const Json run = Json::parse(folder.read("out/result.json"))["results"]["adaptive_run"];
+  const auto actions = run["attributes"]["net_actions"].get<std::vector<std::string>>();
+  const auto times = run["arrays"]["net_action_time"]["data"].get<std::vector<double>>();
+  REQUIRE(actions.size() == times.size());
+  CHECK(std::is_sorted(times.begin(), times.end()));
+  const auto lists = [&](const char* text) {
+    return std::any_of(actions.begin(), actions.end(), [&](const auto& a) { return a.find(text) != std::string::npos; });
+  };
+  CHECK(lists("residual clipping begins at "));
+  CHECK(lists("rate limit begins: the new controller is far from the one in use"));
+  const std::string page = folder.read("out/report.html");
+  CHECK(page.find("Safety nets") != std::string::npos);
+  CHECK(page.find("Tracking error") != std::string::npos);
+}
+
 TEST_CASE("section 3.4 as a graph: the largest stable bandwidth lies between 0.85 and 0.86, and ringing is named") {
   const Json all = result("kallen_1992/section_3_4.yaml");
   const double limit = all["nominal_05"]["attributes"]["largest_stable_bandwidth"];

@@ -145,15 +145,25 @@ bool is_levels(const Json& record) {
          arrays["frequency"]["data"].size() == arrays["kind"]["data"].size();
 }
 
+/// The value with six digits a number; lists as they stand in a graph.
+std::string shown(const Json& value) {
+  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string text;
+  for (const Json& element : value) text += (text.empty() ? "" : ", ") + shown(element);
+  return "[" + text + "]";
+}
+
 void print_other(const Json& record) {
   for (const auto& [name, value] : record["attributes"].items()) {
     if (name == "warnings") continue;  // the run has said them
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    const std::string text = shown(value);
     fmt::print("  {:<20} {}\n", name, text.size() > 100 ? text.substr(0, 97) + "..." : text);
   }
   for (const auto& [name, array] : record["arrays"].items()) {
     const std::string unit = array.value("unit", std::string());
-    const std::string size = array["data"].size() <= 8 ? array["data"].dump() : fmt::format("{} values", array["data"].size());
+    const std::string size = array["data"].size() <= 8 ? shown(array["data"]) : fmt::format("{} values", array["data"].size());
     fmt::print("  {:<20} {}{}\n", name, size, unit.empty() ? "" : " " + unit);
   }
 }

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kMostSamples = 20'000;  // that are drawn one by one
 constexpr std::size_t kFirstEstimates = 15;   // samples whose estimates still swing from their zero start
+constexpr std::size_t kOpenActions = 16;      // of safety nets that are listed without a click
 constexpr double kFarEstimate = 3.0;          // times the largest |G|: estimates beyond it are left out of the Nyquist plot
 
 Panel panel_of(const std::string& title, double height) {
@@ -37,6 +38,17 @@ Series signal(const Record& record, const std::string& array, const std::string&
   return series;
 }
 
+/// What is left between a signal and the desired one.
+Series error(const Record& record, const std::string& array, const std::string& name, int colour) {
+  Series series = signal(record, array, name, colour);
+  const Series desired = signal(record, "desired", "", 0);
+  const std::size_t count = std::min(series.y.size(), desired.y.size());
+  series.x.resize(count);
+  series.y.resize(count);
+  for (std::size_t n = 0; n < count; ++n) series.y[n] -= desired.y[n];
+  return series;
+}
+
 Chart signals_chart(const Record& record) {
   Chart chart;
   chart.name = record.key + "-signals";
@@ -48,7 +60,38 @@ Chart signals_chart(const Record& record) {
   if (record.array("desired") != nullptr) chart.panels[0].series.push_back(signal(record, "desired", "desired", 1));
   if (record.array("beside") != nullptr) chart.panels[0].series.push_back(signal(record, "beside", "beside", 2));
   chart.panels[1].series = {signal(record, "control", "", 0)};
+  if (record.array("desired") != nullptr) {
+    chart.panels.push_back(panel_of("y − desired", 180.0));
+    chart.panels[2].series = {error(record, "output", "output", 0)};
+    if (record.array("beside") != nullptr) chart.panels[2].series.push_back(error(record, "beside", "beside", 2));
+  }
   return chart;
+}
+
+/// The tracking error from each of the times to the next.
+Table windows_table(const Record& record) {
+  Table table{"Tracking error", {{"From [s]"}, {"to [s]"}, {"rms of y − desired"}}, {}};
+  const auto numbers = [&](const char* name) {
+    std::vector<double> list;
+    const auto found = record.attributes.find(name);
+    if (found == record.attributes.end() || !found->is_array()) return list;
+    for (const auto& value : *found) list.push_back(value.is_number() ? value.get<double>() : kNaN);
+    return list;
+  };
+  const std::vector<double> times = numbers("windows"), rms = numbers("rms_in_windows");
+  for (std::size_t i = 0; i < rms.size() && i + 1 < times.size(); ++i) {
+    table.rows.push_back({shown(times[i]), shown(times[i + 1]), shown(rms[i])});
+  }
+  return table;
+}
+
+/// What the safety nets did, and why.
+Table nets_table(const Record& record) {
+  Table table{"Safety nets", {{"Time [s]"}, {"Net", false}}, {}};
+  const std::vector<std::string> texts = record.texts("net_actions");
+  const Array* times = record.array("net_action_time", {texts.size()});
+  for (std::size_t i = 0; times != nullptr && i < texts.size(); ++i) table.rows.push_back({shown(times->re[i]), texts[i]});
+  return table;
 }
 
 /// The curve in pieces of rising or falling real part, each as a series from left to right.
@@ -137,12 +180,25 @@ bool is_table(const Array* array) {
          array->size() == array->shape[0] * array->shape[1];
 }
 
+/// Those that fit on a screen stand open.
+void add_nets(Page& page, const Record& record) {
+  const Table table = nets_table(record);
+  if (table.rows.empty()) return;
+  const bool long_list = table.rows.size() > kOpenActions;
+  if (long_list) open_details(page.body(), fmt::format("Safety nets: {} actions", table.rows.size()));
+  add_table(page.body(), table);
+  if (long_list) close_details(page.body());
+  const double more = record.number("more_net_actions");
+  if (more > 0.0) page.note(fmt::format("{} further actions are not listed.", shown(more)));
+}
+
 }  // namespace
 
 bool add_adaptive_run(Page& page, const Record& record) {
   const Array* output = record.array("output");
   if (output == nullptr || output->size() == 0 || !(record.number("sample_time") > 0.0)) return false;
-  add_attributes(page, record, {"coefficient_names"});
+  add_attributes(page, record, {"coefficient_names", "windows", "rms_in_windows", "net_actions"});
+  add_table(page.body(), windows_table(record));
   page.figure(signals_chart(record), "Output and control signal over time.");
   if (const Array* response = record.array("response"); is_table(response) && response->is_complex()) {
     page.figure(nyquist_chart(record, *response),
@@ -151,6 +207,7 @@ bool add_adaptive_run(Page& page, const Record& record) {
   if (const Array* coefficients = record.array("coefficients"); is_table(coefficients)) {
     page.grid(coefficient_charts(record, *coefficients), "The controller's coefficients over time.");
   }
+  add_nets(page, record);
   return true;
 }
 

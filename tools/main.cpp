@@ -36,6 +36,9 @@ int main(int argc, char** argv) {
   add_rerun(app, session);
   add_report(app, session);
   add_export(app, session);
+  add_agent(app, session);
+  add_hosts(app, session);
+  add_top(app, session);
   add_trust(app, session);
   add_doctor(app, session);
   add_completion(app, session);

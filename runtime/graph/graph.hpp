@@ -85,7 +85,9 @@ struct RunSettings {
   std::int64_t chunk = 1024;        ///< samples of the fastest stream in one call, at most
   std::optional<double> latency_s;  ///< budget: the chunk is not longer than this
   int threads = 1;
-  double watchdog_s = 10.0;  ///< a graph without progress for this long is ended and named
+  double watchdog_s = 10.0;        ///< a graph without progress for this long is ended and named
+  double tolerance_s = 10.0;       ///< between hosts: a connection without progress for this long ends the run
+  bool survives_launcher = false;  ///< hosts go on with a phase when the process that started the run is lost
 };
 
 /// `$phase.block.port.attribute OP value`, or the attribute alone (true, non-zero).

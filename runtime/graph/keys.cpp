@@ -18,7 +18,8 @@ const Names& phase_keys() {
 }
 
 const Names& run_keys() {
-  static const Names kKeys = {"clock", "duration", "seed", "chunk", "latency", "threads", "watchdog"};
+  static const Names kKeys = {"clock",   "duration", "seed",      "chunk",        "latency",
+                              "threads", "watchdog", "tolerance", "launcher_lost"};
   return kKeys;
 }
 

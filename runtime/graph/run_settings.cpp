@@ -56,6 +56,11 @@ void read_run(const Node& node, RunSettings& run, Report& report) {
     if (const auto threads = read_integer(*n, "run: threads", 1, kMostThreads, report)) run.threads = static_cast<int>(*threads);
   if (const Node* n = node.find("watchdog"))
     if (const auto t = read_time(*n, "run: watchdog", report)) run.watchdog_s = *t;
+  if (const Node* n = node.find("tolerance"))
+    if (const auto t = read_time(*n, "run: tolerance", report)) run.tolerance_s = *t;
+  if (const Node* n = node.find("launcher_lost"))
+    if (const auto name = read_choice(*n, "run: launcher_lost", {"stop", "continue"}, report))
+      run.survives_launcher = *name == "continue";
 }
 
 }  // namespace bodeflow::graph

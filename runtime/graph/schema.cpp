@@ -172,14 +172,18 @@ Json object_of(Json properties) {
 }
 
 Json run_definition() {
-  return object_of({{"clock", described(or_variable(Json::array({{{"enum", clocks()}}})),
-                                        "what paces the run; simulated: as fast as possible")},
-                    {"duration", described(number(), "length of the run [s]")},
-                    {"seed", described(integer(), "of all random numbers")},
-                    {"chunk", described(integer(), "samples of the fastest stream in one call, at most")},
-                    {"latency", described(number(), "budget [s]: a chunk is not longer")},
-                    {"threads", described(integer(), "threads of the engine")},
-                    {"watchdog", described(number(), "a graph without progress for this long [s] is ended")}});
+  return object_of(
+      {{"clock",
+        described(or_variable(Json::array({{{"enum", clocks()}}})), "what paces the run; simulated: as fast as possible")},
+       {"duration", described(number(), "length of the run [s]")},
+       {"seed", described(integer(), "of all random numbers")},
+       {"chunk", described(integer(), "samples of the fastest stream in one call, at most")},
+       {"latency", described(number(), "budget [s]: a chunk is not longer")},
+       {"threads", described(integer(), "threads of the engine")},
+       {"watchdog", described(number(), "a graph without progress for this long [s] is ended")},
+       {"tolerance", described(number(), "a connection between hosts without progress for this long [s] ends the run")},
+       {"launcher_lost", described(or_variable(Json::array({{{"enum", {"stop", "continue"}}}})),
+                                   "what hosts do when the process that started the run is lost")}});
 }
 
 Json connections_definition() {

@@ -23,7 +23,4 @@ class End : public execute::RemoteEnd {
   struct Functions;
 };
 
-/// What the run is told when a link gives up.
-std::string text_of(const Cut& cut, const transport::Failure& failure);
-
 }  // namespace bodeflow::lab

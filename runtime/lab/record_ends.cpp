@@ -18,8 +18,8 @@ using execute::Horizon;
 using execute::Lane;
 using execute::Time;
 
-/// How far the sender is, in the header of a Kind::end message: its `count`.
-enum class Stage : std::uint64_t {
+/// How far the sender is, in the header of a Kind::end message: its `position`.
+enum class Stage : std::int64_t {
   streams,  ///< its streams have ended
   rested,   ///< blocks without streams have taken what was left
   finished  ///< nothing more comes
@@ -96,7 +96,7 @@ class RecordOutlet final : public End {
     transport::Header header;
     header.kind = transport::Kind::end;
     header.rate_num = 1;
-    header.count = static_cast<std::uint64_t>(stage);
+    header.position = static_cast<std::int64_t>(stage);
     return send(header, {}, block, lane);
   }
 
@@ -152,8 +152,9 @@ class RecordInlet final : public End {
     if (!message) return tl::unexpected(text_of(cut_, message.error()));
     const transport::Header& header = message->header;
     const Time time{header.position, header.rate_num};
-    if (header.kind == transport::Kind::end && header.count <= static_cast<std::uint64_t>(Stage::finished)) {
-      stage_ = static_cast<Stage>(header.count);
+    if (header.kind == transport::Kind::end && header.position >= 0 &&
+        header.position <= static_cast<std::int64_t>(Stage::finished)) {
+      stage_ = static_cast<Stage>(header.position);
       silent_.store(true, std::memory_order_release);
     } else if (header.kind == transport::Kind::horizon && header.rate_num > 0) {
       horizon_ = time;

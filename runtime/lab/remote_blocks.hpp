@@ -20,6 +20,9 @@ struct MadeEnd {
   std::shared_ptr<execute::RemoteEnd> end;
 };
 
+/// What the run is told when a link gives up.
+std::string text_of(const Cut& cut, const transport::Failure& failure);
+
 MadeEnd make_sample_outlet(const std::string& name, const Cut& cut, std::unique_ptr<transport::Outlet> outlet);
 MadeEnd make_sample_inlet(const std::string& name, const Cut& cut, std::unique_ptr<transport::Inlet> inlet);
 MadeEnd make_record_outlet(const std::string& name, const Cut& cut, std::unique_ptr<transport::Outlet> outlet);

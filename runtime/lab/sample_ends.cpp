@@ -68,9 +68,10 @@ class SampleOutlet final : public End {
     header.position = static_cast<std::int64_t>(position);
     header.rate_num = cut_.facts.rate.num;
     header.rate_den = cut_.facts.rate.den;
+    header.clock = cut_.facts.clock;
+    if (kind != transport::Kind::samples) return header;
     header.channels = cut_.facts.channels;
     header.element = cut_.facts.element;
-    header.clock = cut_.facts.clock;
     return header;
   }
 

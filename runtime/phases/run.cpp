@@ -16,15 +16,6 @@ RunResult rejection(const graph::Phase& phase, Problems problems) {
   return {RunResult::Status::rejected, phase.name, "", to_string(problems), std::move(problems), false};
 }
 
-/// The seed of a phase's repetition: each has random numbers of its own. The only phase of a graph keeps the run's seed.
-std::uint64_t seed_of(const graph::Phase& phase, int repeat) {
-  std::uint64_t hash = phase.run.seed;
-  if (phase.name.empty() && repeat == 0) return hash;
-  for (const char c : fmt::format("{}@{}", phase.name, repeat))
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;  // FNV-1a
-  return hash;
-}
-
 RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDirectory& directory, const RunOptions& options,
                    int repeat) {
   auto initial = initial_records(phase, directory);
@@ -68,6 +59,14 @@ tl::expected<bool, Problem> allowed(const std::optional<graph::Condition>& condi
 }
 
 }  // namespace
+
+std::uint64_t seed_of(const graph::Phase& phase, int repeat) {
+  std::uint64_t hash = phase.run.seed;
+  if (phase.name.empty() && repeat == 0) return hash;
+  for (const char c : fmt::format("{}@{}", phase.name, repeat))
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;  // FNV-1a
+  return hash;
+}
 
 const char* status_word(RunResult::Status status) {
   switch (status) {

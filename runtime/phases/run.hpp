@@ -31,6 +31,9 @@ struct RunResult {
 /// What the manifest says of a run that ended so.
 const char* status_word(RunResult::Status status);
 
+/// The seed of a phase's repetition: each has random numbers of its own. The only phase of a graph keeps the run's seed.
+std::uint64_t seed_of(const graph::Phase& phase, int repeat);
+
 /// The records of earlier phases that a phase refers to. Error: which was never sent, with its place.
 tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(const graph::Phase& phase,
                                                                             const record::RunDirectory& directory);

@@ -55,6 +55,9 @@ void add_rerun(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
 void add_trust(CLI::App& app, Session& session);
+void add_agent(CLI::App& app, Session& session);
+void add_hosts(CLI::App& app, Session& session);
+void add_top(CLI::App& app, Session& session);
 void add_doctor(CLI::App& app, Session& session);
 void add_completion(CLI::App& app, Session& session);
 void add_internal(CLI::App& app, Session& session);  ///< probe-plugin and phase-worker, which the engine itself calls

@@ -1,8 +1,11 @@
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 
 #include "commands/command.hpp"
 #include "commands/interrupt.hpp"
+#include "lab/agents.hpp"
+#include "lab/part_server.hpp"
 #include "phases/sweep.hpp"
 #include "plugins/probe.hpp"
 
@@ -58,11 +61,45 @@ void add_worker(CLI::App& app, Session& session) {
   });
 }
 
+struct PartCommand {
+  lab::PartTask task;
+  std::string host, settings;
+  double memory_gb = 0.0;
+};
+
+int serve_part(const Session& session, PartCommand& command) {
+  const std::atomic<bool>& stop = stop_on_interrupt();
+  signal(SIGINT, SIG_IGN);  // of the terminal: the launcher passes it on in its own words
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (command.memory_gb > 0.0) {
+    const auto bytes = static_cast<rlim_t>(command.memory_gb * 1e9);
+    const rlimit limit{bytes, bytes};
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  command.task.host = command.host == "-" ? "" : command.host;
+  command.task.settings = lab::settings_from(nlohmann::json::parse(command.settings));
+  command.task.settings.name = "bodeflow part " + command.host;
+  Registry registry = session.open_registry();
+  return lab::serve_part(command.task, registry, stop);
+}
+
+void add_part(CLI::App& app, Session& session) {
+  auto* command = app.add_subcommand("part-worker", "Run one host's part of a graph")->group("");
+  auto options = std::make_shared<PartCommand>();
+  command->add_option("--run", options->task.run)->required();
+  command->add_option("--host", options->host)->required();
+  command->add_option("--directory", options->task.directory)->required();
+  command->add_option("--settings", options->settings)->required();
+  command->add_option("--memory", options->memory_gb);
+  command->callback([&session, options] { session.action = [&session, options] { return serve_part(session, *options); }; });
+}
+
 }  // namespace
 
 void add_internal(CLI::App& app, Session& session) {
   add_probe(app, session);
   add_worker(app, session);
+  add_part(app, session);
 }
 
 }  // namespace bodeflow::tools

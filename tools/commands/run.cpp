@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "commands/command.hpp"
+#include "commands/lab_options.hpp"
 #include "commands/plans.hpp"
 #include "commands/run_graph.hpp"
 #include "commands/vector_level.hpp"
@@ -20,6 +21,8 @@ struct RunCommand {
   std::int64_t chunk = 0;
   std::string isa;
   bool dry_run = false;
+  bool here = false;
+  LabOptions lab;
 };
 
 int dry_run(const RunCommand& command, const graph::Graph& graph, Registry& registry, const phases::PlanSettings& settings) {
@@ -49,6 +52,15 @@ int run(const Session& session, const RunCommand& command) {
   options.executable = session.executable;
   options.plugin_path = session.plugin_path;
   options.command = {{"threads", command.threads}, {"chunk", command.chunk}};
+  if (lab::has_hosts(*graph) && !command.here) {
+    auto settings = command.lab.settings("");
+    if (!settings) {
+      say_error(settings.error() + ", or --here (all blocks in this process)");
+      return kUsage;
+    }
+    options.lab = std::move(*settings);
+    options.part_command = part_command(session);
+  }
   const RanGraph ran = run_graph(*graph, registry, options);
   if (ran.directory.empty()) return ran.exit_code;
   if (command.graph.json) {
@@ -79,6 +91,8 @@ void add_run(CLI::App& app, Session& session) {
   command->add_option("--isa", options->isa, "Widest vector unit of kernels (this processor's otherwise)")
       ->check(CLI::IsMember(vector_level_names()));
   command->add_flag("--dry-run", options->dry_run, "Check and plan, show what would run, run nothing");
+  command->add_flag("--here", options->here, "All blocks in this process, whatever hosts the graph names");
+  options->lab.add_to(*command);
   options->graph.add_json_to(*command);
   command->callback([&session, options] { session.action = [&session, options] { return run(session, *options); }; });
 }

@@ -10,6 +10,7 @@
 #include "commands/vector_level.hpp"
 #include "console/console.hpp"
 #include "report/report.hpp"
+#include "transport/service.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -84,24 +85,51 @@ void write_run_report(const std::filesystem::path& directory, const Registry& re
   }
 }
 
+void say_block(const std::string& block, int level, const std::string& text) {
+  if (level >= BF_LOG_WARNING)
+    say_warning(block + ": " + text);
+  else if (level >= BF_LOG_INFO)
+    say(block + ": " + text);
+}
+
+phases::RunResult run_over_hosts(const graph::Graph& graph, const Registry& registry, const RunGraph& options,
+                                 record::RunDirectory& directory, ProgressLine& progress, const std::atomic<bool>& stop) {
+  lab::LaunchOptions launch;
+  launch.settings = *options.lab;
+  launch.plan = options.plan;
+  launch.vector_level = options.vector_level;
+  launch.stop = &stop;
+  launch.part_command = options.part_command;
+  launch.version = BODEFLOW_VERSION;
+  launch.progress = [&progress](const std::string& phase, const execute::Progress& now) { progress.show(phase, now); };
+  launch.log = [&progress](const std::string& host, const std::string& block, int level, const std::string& text) {
+    progress.clear();
+    say_block(host.empty() ? block : host + ": " + block, level, text);
+  };
+  return lab::launch(graph, registry, directory, launch);
+}
+
 }  // namespace
 
 RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph& options) {
   ProgressLine progress;
+  const std::atomic<bool>* stopped = nullptr;
+  const transport::Service topics({}, [&stopped] { return stopped == nullptr || !*stopped; });  // outlives the blocks
   phases::Services services([&progress](const std::string& block, int level, const std::string& text) {
-    if (level < BF_LOG_INFO) return;
     progress.clear();
-    if (level >= BF_LOG_WARNING)
-      say_warning(block + ": " + text);
-    else
-      say(block + ": " + text);
+    say_block(block, level, text);
   });
-  auto prepared = phases::prepare_all(graph, registry, services, options.plan);
-  if (!prepared) {
-    say_what_is_wrong(prepared.error(), options.own_graph);
-    return {kRejected, {}, {}};
+  services.provide(BF_EXTENSION_TRANSPORT, &topics.c());
+  std::vector<phases::Prepared> prepared;
+  if (!options.lab) {
+    auto all = phases::prepare_all(graph, registry, services, options.plan);
+    if (!all) {
+      say_what_is_wrong(all.error(), options.own_graph);
+      return {kRejected, {}, {}};
+    }
+    prepared = std::move(*all);
+    say_warnings(prepared);
   }
-  say_warnings(*prepared);
 
   auto directory = record::RunDirectory::create(
       {options.out, options.graph_name.empty() ? std::filesystem::path(graph.file).stem().string() : options.graph_name,
@@ -113,15 +141,21 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
   }
   const std::atomic<bool>& stop = stop_on_interrupt();  // until here there is nothing to keep
   services.attach(**directory);
+  stopped = &stop;
 
-  phases::RunOptions run;
-  run.plan = options.plan;
-  run.vector_level = options.vector_level;
-  run.stop = &stop;
-  run.command = options.executable;
-  run.plugin_path = options.plugin_path;
-  run.progress = [&progress](const std::string& phase, const execute::Progress& now) { progress.show(phase, now); };
-  const phases::RunResult result = phases::run(graph, std::move(*prepared), registry, **directory, services, run);
+  phases::RunResult result;
+  if (options.lab) {
+    result = run_over_hosts(graph, registry, options, **directory, progress, stop);
+  } else {
+    phases::RunOptions run;
+    run.plan = options.plan;
+    run.vector_level = options.vector_level;
+    run.stop = &stop;
+    run.command = options.executable;
+    run.plugin_path = options.plugin_path;
+    run.progress = [&progress](const std::string& phase, const execute::Progress& now) { progress.show(phase, now); };
+    result = phases::run(graph, std::move(prepared), registry, **directory, services, run);
+  }
   progress.clear();
 
   const auto closed = (*directory)->close(phases::status_word(result.status), result.reason);

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "phases/run.hpp"
+#include "lab/launch.hpp"
 
 namespace bodeflow::tools {
 
@@ -14,7 +14,9 @@ struct RunGraph {
   nlohmann::json command;            ///< what `rerun` must repeat, for the manifest
   std::filesystem::path executable;  ///< our own, for the workers of sweeps, with their --path
   std::vector<std::string> plugin_path;
-  bool own_graph = false;  ///< nobody wrote the graph file: what is wrong with it is said without places
+  std::vector<std::string> part_command;   ///< of this machine's own part in a lab
+  std::optional<transport::Settings> lab;  ///< the graph's blocks run on the hosts that it names
+  bool own_graph = false;                  ///< nobody wrote the graph file: what is wrong with it is said without places
 };
 
 struct RanGraph {

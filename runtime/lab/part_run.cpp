@@ -1,0 +1,165 @@
+#include "lab/part_run.hpp"
+
+#include <fmt/format.h>
+
+#include "lab/channel.hpp"
+
+namespace bodeflow::lab {
+namespace {
+
+/// What may be under way on a connection: a few chunks of it, at least this.
+constexpr std::uint64_t kLeastQueue = std::uint64_t{4} << 20;
+
+std::uint64_t queue_bytes(const Cut& cut, const Rate& period, std::int64_t periods) {
+  if (cut.message || period.num == 0) return std::uint64_t{80} << 20;
+  const double samples = cut.facts.rate.hz() * period.hz() * static_cast<double>(periods);
+  return std::max(kLeastQueue, static_cast<std::uint64_t>(4.0 * samples * cut.facts.channels * 16.0));
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<PartPhase>, Problems> PartPhase::make(const graph::Phase& phase, const std::string& host,
+                                                                   Registry& registry, const phases::Services& services) {
+  auto part = std::make_unique<PartPhase>();
+  part->whole_ = phase;
+  part->host_ = host;
+  graph::Phase mine;
+  mine.place = phase.place;
+  for (const graph::Block& block : phase.blocks)
+    if (block.host == host) mine.blocks.push_back(block);
+  auto made = plan::instantiate(mine, registry, services.host());
+  if (!made) return tl::unexpected(made.error());
+  for (std::size_t i = 0; i < made->size(); ++i) part->made_[mine.blocks[i].name] = std::move((*made)[i]);
+  return part;
+}
+
+tl::expected<Resolution, std::string> PartPhase::resolve(const std::string& block, const std::vector<StreamFacts>& inputs) {
+  const auto instance = made_.find(block);
+  if (instance == made_.end()) return tl::unexpected(fmt::format("block '{}' is not on host '{}'", block, host_));
+  return instance->second->resolve(inputs);
+}
+
+tl::expected<void, Problems> PartPhase::prepare(const plan::Facts& facts, const plan::PlanOptions& options,
+                                                const phases::Services& services) {
+  auto layout = lay_out(whole_, facts, options);
+  if (!layout) return tl::unexpected(layout.error());
+  layout_ = std::move(*layout);
+  part_ = part_of(whole_, facts, layout_, host_, options);
+  auto plan = plan::make_plan(part_.phase, part_.facts, part_.options);
+  if (!plan) return tl::unexpected(plan.error());
+  plan_ = std::move(*plan);
+  instances_.resize(part_.phase.blocks.size());
+  for (std::size_t i = 0; i < part_.phase.blocks.size(); ++i) {
+    const graph::Block& block = part_.phase.blocks[i];
+    const auto made = made_.find(block.name);
+    if (made == made_.end()) continue;
+    instances_[i] = std::move(made->second);
+    auto said = instances_[i]->advise(part_.facts.blocks[i].inputs, part_.facts.blocks[i].outputs);
+    if (!said) return tl::unexpected(Problems{{block.place, fmt::format("block '{}': {}", block.name, said.error())}});
+    for (const AdviceText& text : *said) services.host()->log(block.name, text.level, text.text);
+  }
+  return {};
+}
+
+tl::expected<void, std::string> PartPhase::open(const PartEnd& end, const std::shared_ptr<transport::Participant>& participant,
+                                                const transport::Edge& edge, const transport::GoOn& go_on) {
+  const Cut& cut = layout_.cuts[static_cast<std::size_t>(end.cut)];
+  const std::string& name = part_.phase.blocks[static_cast<std::size_t>(end.block)].name;
+  const auto failed = [&](const transport::Failure& failure) { return tl::unexpected(text_of(cut, failure)); };
+  Link link{cut.name, end.sends ? cut.to_host : cut.from_host, end.sends};
+  MadeEnd made;
+  if (end.sends) {
+    auto outlet = transport::open_outlet(participant, edge);
+    if (!outlet) return failed(outlet.error());
+    if (auto connected = (*outlet)->connect(go_on); !connected) return failed(connected.error());
+    link.outlet = outlet->get();
+    made = cut.message ? make_record_outlet(name, cut, std::move(*outlet)) : make_sample_outlet(name, cut, std::move(*outlet));
+  } else {
+    auto inlet = transport::open_inlet(participant, edge);
+    if (!inlet) return failed(inlet.error());
+    link.inlet = inlet->get();
+    made = cut.message ? make_record_inlet(name, cut, part_.facts.period, std::move(*inlet))
+                       : make_sample_inlet(name, cut, std::move(*inlet));
+  }
+  instances_[static_cast<std::size_t>(end.block)] = std::move(made.instance);
+  ends_[end.block] = std::move(made.end);
+  links_.push_back(std::move(link));
+  return {};
+}
+
+tl::expected<void, std::string> PartPhase::connect(const std::shared_ptr<transport::Participant>& participant,
+                                                   const std::string& run, int repeat, const transport::GoOn& go_on) {
+  // Readers first: a writer waits for its reader, and two hosts that wait for each other's writers would wait for good.
+  for (const bool sends : {false, true})
+    for (const PartEnd& end : part_.ends) {
+      if (end.sends != sends) continue;
+      const Cut& cut = layout_.cuts[static_cast<std::size_t>(end.cut)];
+      const auto edge = edge_of(run, whole_.name, repeat, static_cast<std::size_t>(end.cut), whole_.run.tolerance_s,
+                                queue_bytes(cut, part_.facts.period, layout_.periods));
+      if (auto opened = open(end, participant, edge, go_on); !opened) return opened;
+    }
+  return {};
+}
+
+execute::Outcome PartPhase::run(const std::vector<execute::InitialRecord>& initial, record::RunDirectory& directory, int repeat,
+                                execute::Options options) {
+  std::vector<execute::InitialRecord> mine;
+  for (const execute::InitialRecord& record : initial) {
+    const int block = part_.phase.block_index(whole_.blocks[static_cast<std::size_t>(record.to.block)].name);
+    if (block >= 0) mine.push_back({{block, record.to.port}, record.record});
+  }
+  for (const auto& [block, end] : ends_) options.remote_ends[block] = end.get();
+  options.least_end = layout_.end;
+  const auto sink = directory.begin_phase(part_.phase, part_.facts, plan::to_json(part_.phase, part_.facts, plan_), repeat);
+  if (!sink) {
+    execute::Outcome refused;
+    refused.status = execute::Outcome::Status::partial;
+    refused.reason = sink.error();
+    return refused;
+  }
+  execute::Outcome outcome = execute::execute(part_.phase, part_.facts, plan_, instances_, mine, **sink, options);
+  if (const auto ended = directory.end_phase(outcome); !ended && outcome.status == execute::Outcome::Status::complete) {
+    outcome.status = execute::Outcome::Status::partial;
+    outcome.reason = ended.error();
+  }
+  return outcome;
+}
+
+nlohmann::json PartPhase::links() const {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Link& link : links_) {
+    const transport::EdgeState state = link.sends ? link.outlet->state() : link.inlet->state();
+    list.push_back({{"connection", link.name},
+                    {"other", link.host},
+                    {"sends", link.sends},
+                    {"matched", state.matched},
+                    {"messages", state.messages},
+                    {"samples", state.samples},
+                    {"bytes", state.bytes},
+                    {"queued_bytes", state.queued_bytes},
+                    {"gaps", state.gaps},
+                    {"refused", state.refused},
+                    {"reconnects", state.reconnects},
+                    {"waited_s", state.waited_s},
+                    {"stalled_s", state.stalled_s},
+                    {"latency_p50_s", state.latency_p50_s},
+                    {"latency_p99_s", state.latency_p99_s}});
+  }
+  return list;
+}
+
+std::vector<std::pair<std::string, std::string>> PartPhase::outputs() const {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const graph::Block& block : whole_.blocks) {
+    if (block.host != host_) continue;
+    for (int port = 0; port < block.type->count(BF_MESSAGE, BF_OUT); ++port)
+      names.emplace_back(block.name, block.type->port_at(BF_MESSAGE, BF_OUT, port).name);
+  }
+  return names;
+}
+
+void PartPhase::abandon() {
+  for (auto& instance : instances_) (void)instance.release();
+}
+
+}  // namespace bodeflow::lab

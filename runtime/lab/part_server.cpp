@@ -1,0 +1,327 @@
+// The process of one host's part: answers its launcher, runs its phases on a thread of their own.
+#include "lab/part_server.hpp"
+
+#include <fmt/format.h>
+
+#include <deque>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include "graph/load.hpp"
+#include "lab/channel.hpp"
+#include "lab/facts_json.hpp"
+#include "lab/part_run.hpp"
+
+namespace bodeflow::lab {
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kPoll_s = 0.05;
+/// How often a side says that it is there.
+constexpr double kBeat_s = 0.5;
+/// A side that says nothing for so long is lost.
+constexpr double kLost_s = 10.0;
+constexpr std::size_t kPiece = std::size_t{4} << 20;
+
+json problems_answer(const Problems& problems) { return {{"problems", to_json(problems)}}; }
+
+class PartServer {
+ public:
+  PartServer(const PartTask& task, Registry& registry, const std::atomic<bool>& stop)
+      : task_(task),
+        registry_(registry),
+        stop_(stop),
+        services_([this](const std::string& block, int level, const std::string& text) {
+          const std::lock_guard lock(mutex_);
+          news_.push_back({{"event", "log"}, {"block", block}, {"level", level}, {"text", text}});
+        }) {}
+
+  tl::expected<void, std::string> serve() {
+    auto participant = transport::join(task_.settings);
+    if (!participant) return tl::unexpected(participant.error());
+    participant_ = *participant;
+    auto channel = Channel::open(participant_, task_.run, task_.host, false);
+    if (!channel) return tl::unexpected(channel.error());
+    channel_ = std::move(*channel);
+    heard_ = Clock::now();
+    if (auto connected = channel_->connect([this] { return here(); }); !connected)
+      return tl::unexpected("the launcher is not there: " + connected.error());
+    while (!over_) {
+      auto heard = channel_->hear(kPoll_s);
+      if (!heard) return lost(heard.error());
+      if (*heard) {
+        heard_ = Clock::now();
+        if (auto done = take(**heard); !done) return done;
+      }
+      if (auto told = tell(); !told) return lost(told.error());
+      if (since_heard() > kLost_s) return lost("nothing was heard of the launcher for 10 s");
+    }
+    channel_->drain(2.0);
+    return {};
+  }
+
+  bool hung() const { return hung_; }
+
+ private:
+  using Done = tl::expected<void, std::string>;
+
+  double since_heard() const { return std::chrono::duration<double>(Clock::now() - heard_).count(); }
+  bool here() const { return !stop_ && since_heard() < kLost_s; }
+  Done say(const json& message) {
+    return channel_->say(message, [this] { return here(); });
+  }
+
+  Done take(const Channel::Heard& heard) {
+    if (heard.said.is_null()) {
+      initial_.push_back(SharedRecord::copy(heard.bytes.data(), heard.bytes.size()));
+      return {};
+    }
+    const std::string wish = heard.said.value("do", "");
+    if (wish == "beat") return {};
+    if (wish == "stop") {
+      stop_phase_ = true;
+      return {};
+    }
+    json answer;
+    try {
+      answer = answer_to(wish, heard.said);
+    } catch (const std::exception& error) {
+      answer = {{"error", fmt::format("host '{}': {}", task_.host, error.what())}};
+    }
+    if (answer.is_null()) return {};
+    answer["answer"] = wish;
+    return say(answer);
+  }
+
+  json answer_to(const std::string& wish, const json& said) {
+    if (wish == "begin") return begin(said);
+    if (wish == "phase") return make_phase(said);
+    if (wish == "resolve") return resolve(said);
+    if (wish == "prepare") return prepare(said);
+    if (wish == "connect") return connect(said);
+    if (wish == "run") return run(said);
+    if (wish == "close") return close(said);
+    if (wish == "bye") {
+      over_ = true;
+      return nullptr;
+    }
+    return {{"error", fmt::format("host '{}' does not know what '{}' is", task_.host, wish)}};
+  }
+
+  json begin(const json& said) {
+    auto graph = graph::load_text(said.at("graph").get<std::string>(), said.at("file").get<std::string>(), {}, registry_);
+    if (!graph) return problems_answer(graph.error());
+    graph_ = std::move(*graph);
+    auto directory =
+        record::RunDirectory::create({task_.directory, said.at("name").get<std::string>(), said.at("manifest")}, *graph_);
+    if (!directory) return {{"error", directory.error()}};
+    directory_ = std::move(*directory);
+    services_.attach(*directory_);
+    options_.vector_level = said.at("vector_level").get<std::uint32_t>();
+    plan_.chunk = said.at("chunk").get<std::int64_t>();
+    plan_.threads = said.at("threads").get<int>();
+    return {{"ok", true}};
+  }
+
+  json make_phase(const json& said) {
+    phase_ = &graph_->phases.at(said.at("phase").get<std::size_t>());
+    repeat_ = said.at("repeat").get<int>();
+    auto made = PartPhase::make(*phase_, task_.host, registry_, services_);
+    if (!made) return problems_answer(made.error());
+    part_ = std::move(*made);
+    return {{"ok", true}};
+  }
+
+  json resolve(const json& said) {
+    auto resolution = part_->resolve(said.at("block").get<std::string>(), stream_facts_from(said.at("inputs")));
+    if (!resolution) return {{"error", resolution.error()}};
+    return {{"resolution", to_json(*resolution)}};
+  }
+
+  plan::PlanOptions plan_options() const {
+    plan::PlanOptions options;
+    options.chunk = plan_.chunk > 0 ? plan_.chunk : phase_->run.chunk;
+    options.threads = plan_.threads > 0 ? plan_.threads : phase_->run.threads;
+    options.latency_s = phase_->run.latency_s;
+    return options;
+  }
+
+  json prepare(const json& said) {
+    auto prepared = part_->prepare(facts_from(said.at("facts")), plan_options(), services_);
+    if (!prepared) return problems_answer(prepared.error());
+    return {{"ok", true}};
+  }
+
+  /// In the background: the launcher is answered when all links are there.
+  json connect(const json&) {
+    join_work();
+    stop_phase_ = false;
+    work_ = std::thread([this] {
+      const auto connected = part_->connect(participant_, task_.run, repeat_, [this] { return !stop_ && !stop_phase_; });
+      json answer = {{"answer", "connect"}, {"ok", true}};
+      if (!connected) answer = {{"answer", "connect"}, {"error", connected.error()}};
+      const std::lock_guard lock(mutex_);
+      news_.push_back(std::move(answer));
+    });
+    return nullptr;
+  }
+
+  json run(const json& said) {
+    join_work();
+    std::vector<execute::InitialRecord> initial;
+    for (const json& to : said.at("initial")) {
+      const std::size_t index = initial.size();
+      initial.push_back({{to.at(0).get<int>(), to.at(1).get<int>()}, initial_.at(index)});
+    }
+    initial_.clear();
+    execute::Options options;
+    options.seed = said.at("seed").get<std::uint64_t>();
+    options.clock = phase_->run.clock;
+    options.watchdog_s = phase_->run.watchdog_s;
+    options.vector_level = options_.vector_level;
+    options.stop = &stop_phase_;
+    options.progress = [this](const execute::Progress& now) {
+      const std::lock_guard lock(mutex_);
+      progress_ = now;
+    };
+    running_ = true;
+    work_ = std::thread([this, initial = std::move(initial), options = std::move(options)] {
+      execute::Outcome outcome = part_->run(initial, *directory_, repeat_, options);
+      const std::lock_guard lock(mutex_);
+      outcome_ = std::move(outcome);
+    });
+    return nullptr;
+  }
+
+  void join_work() {
+    if (work_.joinable()) work_.join();
+  }
+
+  /// News, the end of a phase, and twice a second how things stand.
+  Done tell() {
+    std::deque<json> news;
+    std::optional<execute::Outcome> outcome;
+    execute::Progress progress;
+    {
+      const std::lock_guard lock(mutex_);
+      news.swap(news_);
+      outcome.swap(outcome_);
+      progress = progress_;
+    }
+    if (stop_) stop_phase_ = true;
+    for (const json& one : news)
+      if (auto said = say(one); !said) return said;
+    if (outcome) return tell_end(*outcome);
+    if (std::chrono::duration<double>(Clock::now() - told_).count() < kBeat_s) return {};
+    told_ = Clock::now();
+    json state = {{"event", "state"}, {"time_s", progress.time_s}, {"total_s", progress.total_s}, {"rate", progress.rate}};
+    if (running_) state["links"] = part_->links();
+    return say(state);
+  }
+
+  Done tell_end(const execute::Outcome& outcome) {
+    join_work();
+    running_ = false;
+    if (outcome.hung) part_->abandon();
+    hung_ = hung_ || outcome.hung;
+    json ended = {{"event", "ended"},
+                  {"complete", outcome.status == execute::Outcome::Status::complete},
+                  {"interrupted", outcome.interrupted},
+                  {"block", outcome.failed_block < 0 ? "" : part_->name(outcome.failed_block)},
+                  {"reason", outcome.reason},
+                  {"time_s", outcome.time_s},
+                  {"wall_s", outcome.wall_s},
+                  {"overruns", outcome.overruns},
+                  {"links", part_->links()}};
+    std::vector<SharedRecord> records;
+    ended["records"] = json::array();
+    for (const auto& [block, port] : part_->outputs()) {
+      SharedRecord last = directory_->last_record(phase_->name, block, port);
+      if (!last) continue;
+      ended["records"].push_back({block, port});
+      records.push_back(std::move(last));
+    }
+    if (auto said = say(ended); !said) return said;
+    for (const SharedRecord& record : records) {
+      const std::span<const std::byte> bytes(reinterpret_cast<const std::byte*>(record.bytes()), record.size());
+      if (auto sent = channel_->send(bytes, [this] { return here(); }); !sent) return sent;
+    }
+    part_.reset();
+    return {};
+  }
+
+  /// Closes the run directory and sends its files.
+  json close(const json& said) {
+    const auto closed = directory_->close(said.at("status").get<std::string>(), said.at("reason").get<std::string>());
+    json files = json::array();
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(task_.directory))
+      if (entry.is_regular_file())
+        files.push_back({std::filesystem::relative(entry.path(), task_.directory).string(), entry.file_size()});
+    json answer = {{"answer", "close"}, {"files", files}};
+    if (!closed) answer["error"] = closed.error();
+    if (!say(answer)) return nullptr;
+    for (const json& file : files) send_file(task_.directory / file.at(0).get<std::string>(), file.at(1).get<std::uint64_t>());
+    return nullptr;
+  }
+
+  void send_file(const std::filesystem::path& file, std::uint64_t size) {
+    std::ifstream in(file, std::ios::binary);
+    std::vector<char> piece(std::min<std::uint64_t>(size, kPiece));
+    for (std::uint64_t done = 0; done < size; done += piece.size()) {
+      piece.resize(std::min<std::uint64_t>(size - done, kPiece));
+      in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+      heard_ = Clock::now();
+      if (!channel_->send(std::as_bytes(std::span(piece)), [this] { return here(); })) return;
+    }
+  }
+
+  /// What a part does that nobody leads any more: it ends its phase, or lets it end, and keeps what there is.
+  Done lost(const std::string& why) {
+    if (running_ && !phase_->run.survives_launcher) stop_phase_ = true;
+    join_work();
+    if (directory_) (void)directory_->close(stop_phase_ ? "partial" : "complete", "the launcher was lost: " + why);
+    return tl::unexpected(fmt::format("{}; what was recorded is in '{}'", why, task_.directory.string()));
+  }
+
+  const PartTask& task_;
+  Registry& registry_;
+  const std::atomic<bool>& stop_;
+  std::mutex mutex_;  ///< of news, outcome, progress
+  std::deque<json> news_;
+  std::optional<execute::Outcome> outcome_;
+  execute::Progress progress_;
+  phases::Services services_;
+  std::shared_ptr<transport::Participant> participant_;
+  std::unique_ptr<Channel> channel_;
+  Clock::time_point heard_, told_;
+  bool over_ = false, running_ = false, hung_ = false;
+
+  struct {
+    std::int64_t chunk = 0;
+    int threads = 0;
+  } plan_;
+  execute::Options options_;
+  std::optional<graph::Graph> graph_;
+  std::unique_ptr<record::RunDirectory> directory_;
+  const graph::Phase* phase_ = nullptr;
+  int repeat_ = 0;
+  std::vector<SharedRecord> initial_;
+  std::atomic<bool> stop_phase_{false};
+  std::thread work_;
+  std::unique_ptr<PartPhase> part_;
+};
+
+}  // namespace
+
+int serve_part(const PartTask& task, Registry& registry, const std::atomic<bool>& stop) {
+  PartServer server(task, registry, stop);
+  const auto served = server.serve();
+  if (!served) fmt::print(stderr, "{}\n", served.error());
+  if (server.hung()) std::_Exit(1);
+  return served ? 0 : 1;
+}
+
+}  // namespace bodeflow::lab

@@ -71,7 +71,7 @@ void add_transport(dds::DomainParticipantQos& qos, const Settings& settings, Car
   } else {
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
     udp->sendBufferSize = udp->receiveBufferSize = kSocketBuffer;
-    udp->maxMessageSize = settings.datagram;
+    udp->maxMessageSize = settings.security ? std::max(settings.datagram, kSmallestSecureDatagram) : settings.datagram;
     udp->interfaceWhiteList = interfaces;
     udp->maxInitialPeersRange = kPeerRange;
     transports.push_back(udp);

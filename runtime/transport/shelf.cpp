@@ -87,7 +87,8 @@ void Shelf::compare_hosts() {
 
 std::optional<Shelf::Item> Shelf::take(double seconds) {
   std::unique_lock lock(mutex_);
-  if (items_.empty()) changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return !items_.empty(); });
+  if (items_.empty() && seconds > 0.0)
+    changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return !items_.empty(); });
   if (items_.empty()) return std::nullopt;
   auto item = std::move(items_.front());
   items_.pop_front();

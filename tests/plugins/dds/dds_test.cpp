@@ -1,0 +1,133 @@
+// Topics between running graphs, and between graphs and other programs.
+#include <signal.h>
+
+#include <filesystem>
+
+#include "catch.hpp"
+#include "system/command.hpp"
+#include "transport/processes.hpp"
+
+using bodeflow::test::Folder;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> graph(const std::string& file, const fs::path& out, std::vector<std::string> settings) {
+  std::vector<std::string> command = {BODEFLOW_BUILD_DIR "/bin/bodeflow", "run", file, "--out", out.string()};
+  settings.push_back("domain=" + std::to_string(test_domain()));
+  for (const auto& setting : settings) command.insert(command.end(), {"--set", setting});
+  return command;
+}
+
+std::string ours(const std::string& name) { return BODEFLOW_SOURCE_DIR "/graphs/dds/" + name; }
+
+/// What a run logged or why it failed: its standard error.
+std::vector<std::string> with_errors(std::vector<std::string> command) {
+  std::string line = "exec";
+  for (const auto& word : command) line += " '" + word + "'";
+  return {"sh", "-c", line + " 2>&1"};
+}
+
+}  // namespace
+
+TEST_CASE("a topic is recorded and its recording replayed bit for bit") {
+  const Folder folder;
+  const auto& path = folder.path();
+  {
+    Process record(graph(ours("record_topic.yaml"), path / "a", {"topic=speed"}));
+    Process publish(graph(ours("publish.yaml"), path / "b", {"topic=speed"}));
+    CHECK(publish.wait() == 0);
+    CHECK(record.wait() == 0);
+  }
+  const auto recorded = folder.read("a/topic.csv");
+  CHECK(std::count(recorded.begin(), recorded.end(), '\n') == 10001);
+  Process record(graph(ours("record_topic.yaml"), path / "c", {"topic=again"}));
+  Process replay(graph(ours("replay_topic.yaml"), path / "d", {"topic=again", "file=" + (path / "a/topic.csv").string()}));
+  CHECK(replay.wait() == 0);
+  CHECK(record.wait() == 0);
+  CHECK(folder.read("c/topic.csv") == recorded);
+}
+
+TEST_CASE("a topic that carries something else than stated is refused by name") {
+  const Folder folder;
+  Process subscribe(with_errors(graph(ours("record_topic.yaml"), folder.path() / "a", {"topic=other", "rate=2 kHz"})));
+  Process publish(graph(ours("publish.yaml"), folder.path() / "b", {"topic=other"}));
+  CHECK(subscribe.wait() == 1);
+  CHECK(subscribe.output().find("block 'subscribe': topic 'other' carries 1000.000000 samples/s; stated here: 2000.000000 Hz") !=
+        std::string::npos);
+}
+
+TEST_CASE("a stream that a program outside publishes becomes a stream of a graph") {
+  const Folder folder;
+  Process subscribe(graph(ours("record_topic.yaml"), folder.path() / "a", {"topic=outside"}));
+  Process outside(peer("send", {"topic=outside", "open=1", "count=10", "bytes=8000"}));
+  CHECK(outside.wait() == 0);
+  CHECK(subscribe.wait() == 0);
+  const auto csv = folder.read("a/topic.csv");
+  CHECK(csv.find("\n0.001,1\n") != std::string::npos);
+  CHECK(csv.find("\n9.999,9999\n") != std::string::npos);
+}
+
+TEST_CASE("a subscriber that waits ends at an interrupt") {
+  const Folder folder;
+  Process subscribe(with_errors(graph(ours("record_topic.yaml"), folder.path() / "a", {"topic=silent"})));
+  REQUIRE(shell("for i in $(seq 200); do [ -e " + (folder.path() / "a/events.jsonl").string() +
+                " ] && exit 0; sleep 0.02; done; exit 1") == 0);
+  shell("sleep 0.3");
+  subscribe.signal(SIGINT);
+  CHECK(subscribe.prints("interrupted", 2.0));
+  subscribe.wait();
+}
+
+TEST_CASE("nobody on a topic within the tolerance ends the run with the topic's name") {
+  const Folder folder;
+  folder.write("graph.yaml", R"(bodeflow: 1
+title: nobody
+run: {clock: simulated, duration: 1 s}
+variables: {domain: 0}
+blocks:
+  subscribe: {block: dds.subscribe, topic: nobody, rate: 1 kHz, tolerance: 0.3 s, domain: "${domain}"}
+record: [subscribe.out]
+)");
+  Process run(with_errors(graph((folder.path() / "graph.yaml").string(), folder.path() / "a", {})));
+  CHECK(run.wait() == 1);
+  CHECK(run.output().find("block 'subscribe': topic 'nobody': no writer came within 0.3 s") != std::string::npos);
+}
+
+TEST_CASE("records travel whole from graph to graph") {
+  const Folder folder;
+  folder.write("publish.yaml", R"(bodeflow: 1
+title: records out
+run: {clock: simulated, duration: 3 s, seed: 4}
+variables: {domain: 0}
+blocks:
+  noise: {block: generators.noise, sample_rate: 1 kHz}
+  record: {block: acquisition.recording}
+  publish: {block: dds.publish_records, topic: experiments, domain: "${domain}"}
+  keep: {block: output.records, file: sent.jsonl}
+connections:
+  - noise -> record.input
+  - noise -> record.output
+  - record -> publish
+  - record -> keep
+)");
+  folder.write("subscribe.yaml", R"(bodeflow: 1
+title: records in
+run: {clock: simulated, duration: 1 s}
+variables: {domain: 0}
+blocks:
+  subscribe: {block: dds.subscribe_records, topic: experiments, domain: "${domain}"}
+  keep: {block: output.records, file: got.jsonl}
+connections:
+  - subscribe -> keep
+)");
+  Process subscribe(with_errors(graph((folder.path() / "subscribe.yaml").string(), folder.path() / "a", {})));
+  Process publish(with_errors(graph((folder.path() / "publish.yaml").string(), folder.path() / "b", {})));
+  const int published = publish.wait(), subscribed = subscribe.wait();
+  INFO(publish.output() << subscribe.output());
+  CHECK(published == 0);
+  REQUIRE(subscribed == 0);
+  const auto body = [](const std::string& line) { return line.substr(line.find("\"type\"")); };
+  CHECK(folder.read("b/sent.jsonl").size() > 10000);
+  CHECK(body(folder.read("a/got.jsonl")) == body(folder.read("b/sent.jsonl")));
+}

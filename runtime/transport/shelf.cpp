@@ -30,25 +30,32 @@ std::optional<std::uint64_t> Shelf::place(const Header& header) {
 
 void Shelf::put(Way way, std::span<const std::byte> bytes) {
   auto decoded = decode(bytes);
-  std::unique_lock lock(mutex_);
-  if (!decoded || !belongs(decoded->header)) {
+  if (!decoded) {
+    const std::lock_guard lock(mutex_);
     ++counted_.refused;
     return;
   }
-  const auto gap = place(decoded->header);
-  if (!gap) return;
-  counted_.gaps += *gap;
-  if (!edge_.lossless) {
-    items_.clear();
-    queued_ = 0;
+  Item item{{std::move(decoded->header), {decoded->payload.begin(), decoded->payload.end()}}, way, 0};
+  {
+    const std::lock_guard lock(mutex_);
+    if (!belongs(item.message.header)) {
+      ++counted_.refused;
+      return;
+    }
+    const auto gap = place(item.message.header);
+    if (!gap) return;
+    counted_.gaps += *gap;
+    if (edge_.lossless) {
+      item.gap = *gap;
+    } else {
+      items_.clear();
+      queued_ = 0;
+    }
+    queued_ += item.message.payload.size();
+    items_.push_back(std::move(item));
   }
-  lock.unlock();
-  Item item{{std::move(decoded->header), {decoded->payload.begin(), decoded->payload.end()}}, way, edge_.lossless ? *gap : 0};
-  lock.lock();
-  queued_ += item.message.payload.size();
-  items_.push_back(std::move(item));
   progress_.made();
-  changed_.notify_one();
+  changed_.notify_one();  // without the lock: who wakes needs it
 }
 
 bool Shelf::room(Way way) {
@@ -56,6 +63,7 @@ bool Shelf::room(Way way) {
   // Writers with credit stay within queue_bytes; others are held back here, and by the library's own history then.
   if (!edge_.lossless || items_.empty() || queued_ + Ledger::kOverhead * items_.size() <= edge_.queue_bytes) return true;
   left_[way] = true;
+  any_left_.store(true);
   return false;
 }
 
@@ -98,8 +106,10 @@ std::optional<Shelf::Item> Shelf::take(double seconds) {
 }
 
 std::array<bool, kWays> Shelf::claim_left() {
+  if (!any_left_.load()) return {};
   const std::lock_guard lock(mutex_);
   if (queued_ + Ledger::kOverhead * items_.size() > edge_.queue_bytes) return {};
+  any_left_.store(false);
   return std::exchange(left_, {});
 }
 

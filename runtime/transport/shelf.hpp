@@ -54,6 +54,7 @@ class Shelf {
   std::array<std::optional<middleware::Guid>, kWays> reader_;
   bool had_writer_ = false, lost_ = false, same_host_ = false;
   std::array<bool, kWays> left_{};
+  std::atomic<bool> any_left_{false};
   std::deque<Item> items_;
   std::uint64_t queued_ = 0;  // payload bytes
   bool begun_ = false;

@@ -108,12 +108,13 @@ void AlsaCapture::break_off(Io& io, std::size_t offset) {
   if (!card_.mark_gaps)
     fail(text_of(gap) + ": the samples were not taken in time; raise buffer or run.chunk, or set on_gap: mark to go on");
   begin();
-  gap.missing = samples_missing(clock_, gap.position, rate_);
+  const TimeStamp next{gap.position, pcm_->started_s()};
+  gap.missing = samples_missing(clock_, next, rate_);
   breaks_.broke();
   report_.count(gap);
   log_warning(text_of(gap));
   io.emit(gaps, gap_record(gap), offset);
-  clock_.move_to(gap.position);
+  clock_.start_anew(next);
   base_ = gap.position;
 }
 

@@ -54,10 +54,10 @@ void BreakCounter::broke() {
   if (++breaks_ == kMost) fail("the device breaks off at each start, " + std::to_string(kMost) + " times in a row");
 }
 
-std::optional<std::int64_t> samples_missing(const DeviceClock& clock, std::int64_t position, const Rate& rate) {
+std::optional<std::int64_t> samples_missing(const DeviceClock& clock, const TimeStamp& next, const Rate& rate) {
   if (!clock.last()) return std::nullopt;
-  const double due_s = clock.last()->time_s + static_cast<double>(position - clock.last()->position) / rate.hz();
-  return std::max<std::int64_t>(0, std::llround((monotonic_s() - due_s) * rate.hz()));
+  const double due_s = clock.last()->time_s + static_cast<double>(next.position - clock.last()->position) / rate.hz();
+  return std::max<std::int64_t>(0, std::llround((next.time_s - due_s) * rate.hz()));
 }
 
 void describe_ac_corner(Describe& d) {

@@ -34,8 +34,9 @@ class BreakCounter {
   int breaks_ = 0;
 };
 
-/// How long a device stood still: from where its last stamp puts sample `position` to now, in samples. None without a stamp.
-std::optional<std::int64_t> samples_missing(const DeviceClock& clock, std::int64_t position, const Rate& rate);
+/// How long a device stood still: from where its last stamp puts the sample that comes next to the time at which it was taken, in
+/// samples. None without a stamp.
+std::optional<std::int64_t> samples_missing(const DeviceClock& clock, const TimeStamp& next, const Rate& rate);
 
 /// Describes ac_corner, the -3 dB frequency of an AC-coupled input, and notes it in the facts of a stream as `sensor.ac_corner`.
 void describe_ac_corner(Describe& d);

@@ -196,11 +196,12 @@ void AlsaDuplex::break_off(bool underrun, std::size_t offset, Io& io) {
     breaks_.broke();
     const auto running = duplex_->restart();
     if (!running) fail(running.error().text);
-    gap.missing = samples_missing(clock_, gap.position, rate_);
+    const TimeStamp next{gap.position, duplex_->capture().started_s() + static_cast<double>(round_trip_) / rate_.hz()};
+    gap.missing = samples_missing(clock_, next, rate_);
     report_.count(gap);
     log_warning(text_of(gap));
     io.emit(gaps, gap_record(gap), offset);
-    clock_.move_to(gap.position);
+    clock_.start_anew(next);
     base_ = gap.position;
     if (*running) return;
     gap.cause = GapCause::overrun;

@@ -25,6 +25,10 @@ class Silence {
   Silence& operator=(const Silence&) = delete;
 };
 
+double seconds_of(const snd_htimestamp_t& time) {
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 }  // namespace
 
 void Pcm::Close::operator()(snd_pcm_t* pcm) const { snd_pcm_close(pcm); }
@@ -126,8 +130,18 @@ std::optional<TimeStamp> Pcm::stamp() {
   const std::int64_t queued = static_cast<std::int64_t>(spec_.buffer) - waiting;
   TimeStamp stamp;
   stamp.position = spec_.direction == Direction::capture ? moved_ + waiting : moved_ - queued;
-  stamp.time_s = static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  stamp.time_s = seconds_of(time);
   return stamp;
+}
+
+double Pcm::started_s() const {
+  snd_pcm_status_t* status = nullptr;
+  snd_htimestamp_t time{};
+  if (snd_pcm_status_malloc(&status) == 0 && snd_pcm_status(pcm_.get(), status) == 0)
+    snd_pcm_status_get_trigger_htstamp(status, &time);
+  snd_pcm_status_free(status);
+  const double stamp_s = seconds_of(time);
+  return stamp_s > 0.0 ? stamp_s : monotonic_s();  // some drivers do not tell
 }
 
 }  // namespace bodeflow::acquisition

@@ -54,6 +54,9 @@ class Pcm {
   /// Frames that the device has taken or given since `start`, and when; none where it does not tell.
   std::optional<TimeStamp> stamp();
 
+  /// When it started, on the monotonic clock of the machine: the time of the first frame.
+  double started_s() const;
+
   const PcmSpec& spec() const { return spec_; }  ///< with the sizes that the device has
   std::size_t frame_bytes() const { return spec_.channels * bytes_of(spec_.format); }
 

@@ -118,14 +118,13 @@ void AlsaPlayback::break_off(Io& io, std::size_t offset) {
   if (!card_.mark_gaps)
     fail(text_of(gap) + ": the device was not fed in time; raise lead and buffer, or set on_gap: mark to go on");
   begin();
-  const auto silence = static_cast<std::int64_t>(lead_);
-  gap.missing = samples_missing(clock_, gap.position, rate_);
-  if (gap.missing) *gap.missing += silence;
+  const TimeStamp next{gap.position, pcm_->started_s() + static_cast<double>(lead_) / rate_.hz()};  // behind the silence
+  gap.missing = samples_missing(clock_, next, rate_);
   breaks_.broke();
   report_.count(gap);
   log_warning(text_of(gap));
   io.emit(gaps, gap_record(gap), offset);
-  clock_.move_to(gap.position - silence);
+  clock_.start_anew(next);
   base_ = gap.position;
 }
 

@@ -27,9 +27,9 @@ void DeviceClock::add(TimeStamp stamp) {
   stamps_.push_back(stamp);
 }
 
-void DeviceClock::move_to(std::int64_t position) {
+void DeviceClock::start_anew(TimeStamp first) {
   now_.reset();
-  last_ = TimeStamp{position, monotonic_s()};
+  last_ = first;
 }
 
 void DeviceClock::reset() {

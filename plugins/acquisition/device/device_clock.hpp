@@ -20,8 +20,8 @@ class DeviceClock {
 
   /// Takes a stamp of a later position than the last. Stamps closer than the present spacing are passed over, save as `last`.
   void add(TimeStamp stamp);
-  /// The device started anew just now, with that position: the rate is that of the longest stretch without a gap.
-  void move_to(std::int64_t position);
+  /// The device started anew with this sample: the rate is that of the longest stretch without a gap.
+  void start_anew(TimeStamp first);
   void reset();
 
   const std::optional<TimeStamp>& last() const { return last_; }

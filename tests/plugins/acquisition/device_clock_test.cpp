@@ -10,7 +10,7 @@ TEST_CASE("device clock: the rate is that of the longest stretch without a gap")
   CHECK_FALSE(clock.rate_hz());
   for (int k = 0; k <= 10; ++k) clock.add({100 * k, 5.0 + 0.1 * k});  // 1000 Hz for a second
   CHECK(*clock.rate_hz() == Approx(1000));
-  clock.move_to(5000);
+  clock.start_anew({5000, 50.0});
   for (int k = 0; k <= 40; ++k) clock.add({5000 + 101 * k, 50.0 + 0.1 * k});  // 1010 Hz for four
   CHECK(*clock.rate_hz() == Approx(1010));
 }

@@ -106,7 +106,7 @@ TEST_CASE("a pulled connection ends the run by name and keeps the data") {
   IiodEmulator::Settings settings;
   settings.pull_at = 40000;
   const IiodEmulator iiod(settings);
-  const Ended ended = capture(folder, iiod, "10 s", {"blocks.adc.buffer=1000"});
+  const Ended ended = capture(folder, iiod, "10 s", {"blocks.adc.buffer=1000", "blocks.adc.kernel_buffers=200"});
   CHECK((ended.exit_code == 1 || ended.exit_code == 5));
   CHECK_THAT(ended.err, Contains("block 'adc': IIO device 'counter' at " + iiod.uri() + ": the connection is gone"));
   CHECK(json::parse(folder.read("out/result.json"))["status"] == "failed");
@@ -130,7 +130,7 @@ TEST_CASE("losses that the time stamps show are marked at their places or end th
   IiodEmulator::Settings settings;
   settings.losses = {{3000, 17}, {8000, 1}, {16384, 4000}};
   const IiodEmulator iiod(settings);
-  const std::vector<std::string> stamps{"blocks.adc.timestamps=true", "blocks.adc.buffer=1024"};
+  const std::vector<std::string> stamps{"blocks.adc.timestamps=true", "blocks.adc.buffer=1024", "blocks.adc.kernel_buffers=200"};
   auto marked = stamps;
   marked.push_back("blocks.adc.on_gap=mark");
   const Ended ended = capture(folder, iiod, "0.3 s", marked);

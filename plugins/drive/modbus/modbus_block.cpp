@@ -319,7 +319,7 @@ void ModbusBlock::finish(Io& io) {
   if (static_cast<double>(counts.late) > kMuchLate * static_cast<double>(counts.samples)) {
     log_warning(std::to_string(counts.late) + " of " + std::to_string(counts.samples) + " samples came late: a cycle takes " +
                 short_number(counts.total_s / cycles * 1e3) + " ms in the mean, " + short_number(counts.longest_s * 1e3) +
-                " ms at most; lower poll_rate or read fewer registers");
+                " ms at most; lower poll_rate or read fewer registers, unless the machine itself was too busy");
   }
 }
 

@@ -178,6 +178,7 @@ int receive(const std::shared_ptr<Participant>& participant) {
       return failed(message.error());
     }
     if (k == 0 && number("any_first", 0) != 0) position = message->header.position;
+    if (k == count / 10) std::cout << "resident_begin_kb=" << resident_kb() << std::endl;
     if (k == 0) std::cout << "first_sequence=" << message->header.sequence << "\nepoch=" << message->header.epoch << std::endl;
     if (message->header.position != position) ++wrong;
     for (std::size_t n = 0; n < message->header.count; ++n) {

@@ -101,6 +101,7 @@ class DdsInlet final : public Inlet {
     auto credits = participant_->node(way)->writer({topic + ".credit", Type::credit, Flow::last}, {});
     if (!credits) return tl::unexpected(credits.error());
     side.credits = std::move(*credits);
+    taken_.stream = edge_.stream;
     tell(way);
     return {};
   }
@@ -123,7 +124,7 @@ class DdsInlet final : public Inlet {
     for (const auto way : {kFar, kNear}) {
       if (left[way] && sides_[way].reader) sides_[way].reader->pull();
     }
-    taken_ = {item.way, item.message.header.epoch, item.message.header.sequence + 1};
+    taken_ = {item.way, item.message.header.stream, item.message.header.epoch, item.message.header.sequence + 1};
     owed_ += item.message.payload.size() + Ledger::kOverhead;
     if (owed_ >= edge_.queue_bytes / 8 || steady_clock::now() - granted_ >= kGrantPeriod) grant();
     return std::move(item.message);
@@ -138,7 +139,7 @@ class DdsInlet final : public Inlet {
 
   void tell(Way way) {
     Credit credit;
-    credit.stream = edge_.stream;
+    credit.stream = taken_.stream;
     credit.inlet = id_;
     credit.epoch = taken_.epoch;
     credit.reader = sides_[way].reader->guid();
@@ -151,6 +152,7 @@ class DdsInlet final : public Inlet {
 
   struct Taken {
     Way way = kFar;
+    std::uint64_t stream = 0;  ///< an open edge learns it from the first message
     std::uint32_t epoch = 0;
     std::uint64_t count = 0;
   };

@@ -70,6 +70,19 @@ TEST_CASE("a slow consumer holds the sender back and memory stays within the que
   CHECK(receiver.number("resident_kb") < 60000);
 }
 
+TEST_CASE("memory stays within the queue on an open edge too") {
+  Process receiver(
+      peer("receive", {"topic=open", "open=1", "stream=0", "count=1200", "bytes=80000", "queue=400000", "pause_us=1000"}));
+  Process sender(peer("send", {"topic=open", "open=1", "count=1200", "bytes=80000", "queue=400000"}));
+  CHECK(sender.wait() == 0);
+  CHECK(receiver.wait() == 0);
+  INFO(sender.output() << "\n" << receiver.output());
+  CHECK(receiver.number("wrong") == 0);
+  CHECK(receiver.number("messages") == 1200);
+  CHECK(sender.number("resident_kb") < 60000);  // of 96 MB
+  CHECK(receiver.number("resident_kb") < 60000);
+}
+
 TEST_CASE("a sender whose reader is killed says how many messages were not taken") {
   Process receiver(peer("receive", {"topic=killed", "count=1000", "die_after=50", "queue=100000"}));
   Process sender(peer("send", {"topic=killed", "count=1000", "queue=100000", "tolerance=1"}));
@@ -206,27 +219,59 @@ TEST_CASE("a board shows those who are there and forgets the killed within its l
   CHECK(reader.value("t44").empty());
 }
 
+namespace {
+
+/// Files of the library's ports in a domain: they are numbered by it, whatever else runs here.
+int shared_files(unsigned domain) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
+    const auto name = entry.path().filename().string();
+    for (unsigned port = 7400 + 250 * domain; port < 7650 + 250 * domain; ++port) {
+      if (name.find("port" + std::to_string(port)) != std::string::npos) ++count;
+    }
+  }
+  return count;
+}
+
+}  // namespace
+
 TEST_CASE("nothing is left in shared memory after a clean end") {
   const unsigned domain = 20 + (test_domain() + 80) % 200;  // where no test has killed anybody
-  const auto files = [&] {
-    int count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
-      const auto name = entry.path().filename().string();
-      // Ports are numbered by domain: those of this test, whatever others run here.
-      const auto first = 7400 + 250 * domain;
-      for (unsigned port = first; port < first + 250; ++port) {
-        if (name.find("port" + std::to_string(port)) != std::string::npos) ++count;
-      }
-    }
-    return count;
-  };
-  Process receiver(peer("receive", {"topic=clean", "linger=0.3", "domain=" + std::to_string(domain)}));
-  Process sender(peer("send", {"topic=clean", "linger=0.5", "domain=" + std::to_string(domain)}));
+  const auto in_domain = "domain=" + std::to_string(domain);
+  Process receiver(peer("receive", {"topic=clean", "linger=0.3", in_domain}));
+  Process sender(peer("send", {"topic=clean", "linger=0.5", in_domain}));
   REQUIRE(sender.prints("connected"));
-  CHECK(files() > 0);
+  CHECK(shared_files(domain) > 0);
   CHECK(sender.wait() == 0);
   CHECK(receiver.wait() == 0);
-  CHECK(files() == 0);
+  CHECK(shared_files(domain) == 0);
+}
+
+TEST_CASE("what a killed process left in shared memory goes when another joins and what living ones use stays", "[long]") {
+  const unsigned domain = 20 + (test_domain() + 140) % 200;
+  const auto in_domain = "domain=" + std::to_string(domain);
+  {
+    Process killed(peer("board", {"seconds=20", in_domain}));
+    REQUIRE(killed.prints("t0="));
+    killed.signal(9);
+    killed.wait();
+  }
+  CHECK(shared_files(domain) > 0);
+  Process receiver(peer("receive", {"topic=alive", "count=400", in_domain}));
+  Process sender(peer("send", {"topic=alive", "count=400", "pause_us=10000", in_domain}));
+  REQUIRE(receiver.prints("first_sequence"));
+  shell("sleep 2.5");
+  Process joins(peer("board", {"seconds=0.1"}));  // in another domain: leftovers of all are looked at
+  CHECK(joins.wait() == 0);
+  CHECK(sender.wait() == 0);
+  CHECK(receiver.wait() == 0);
+  CHECK(receiver.number("wrong") == 0);
+  Process last(peer("board", {"seconds=0.1"}));
+  shell("sleep 2.5");
+  CHECK(last.wait() == 0);
+  Process after(peer("board", {"seconds=0.1"}));
+  CHECK(after.wait() == 0);
+  CHECK(shared_files(domain) == 0);
 }
 
 TEST_CASE("memory is flat while gigabytes go through", "[long]") {

@@ -28,6 +28,7 @@ const std::string kBoard = "bodeflow/agents";
 
 std::string mailbox_of(const std::string& agent) { return "bodeflow/agent/" + agent; }
 
+constexpr int kLooks = 20;  ///< of 50 ms
 constexpr double kClock_s = 3.0;
 constexpr std::size_t kMostClocks = 8;
 
@@ -57,6 +58,7 @@ class Agent {
     if (!mailbox) return tl::unexpected(mailbox.error().text);
     auto board = transport::open_board(*participant, kBoard, true);
     if (!board) return tl::unexpected(board.error().text);
+    if (is_taken(**board)) return tl::unexpected(fmt::format("the lab has an agent called '{}' already", task_.info.name));
     task_.tell(fmt::format("agent '{}' is there: {} plugins, runs below '{}'", task_.info.name, task_.info.plugins.size(),
                            task_.directory.string()));
     while (!stop_ && !(task_.once && served_ > 0 && children_.empty())) {
@@ -69,6 +71,16 @@ class Agent {
   }
 
  private:
+  /// Whether another agent of this name shows itself while we look around.
+  bool is_taken(transport::Board& board) const {
+    for (int i = 0; i < kLooks && !stop_; ++i) {
+      for (const std::string& text : board.texts())
+        if (const auto agent = agent_from(text); agent && agent->name == task_.info.name) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return false;
+  }
+
   tl::expected<void, std::string> say_hello(transport::Board& board) {
     AgentInfo info = task_.info;
     info.load = std::round(load_now() * 10.0) / 10.0;

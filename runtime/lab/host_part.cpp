@@ -12,8 +12,8 @@ using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 using Done = tl::expected<void, std::string>;
 
-/// A part says how it stands twice a second.
-constexpr double kLost_s = 10.0;
+/// What a host may need to take what it is told.
+constexpr double kTake_s = 10.0;
 
 /// A relative path that stays below its folder.
 bool stays_inside(const fs::path& name) {
@@ -25,8 +25,8 @@ bool stays_inside(const fs::path& name) {
 
 }  // namespace
 
-HostPart::HostPart(std::string name, std::unique_ptr<Channel> channel, Log log)
-    : name_(std::move(name)), channel_(std::move(channel)), log_(std::move(log)), heard_(Clock::now()) {}
+HostPart::HostPart(std::string name, std::unique_ptr<Channel> channel, double lost_s, Log log)
+    : name_(std::move(name)), channel_(std::move(channel)), lost_s_(lost_s), log_(std::move(log)), heard_(Clock::now()) {}
 
 std::string HostPart::title() const { return name_.empty() ? "this machine's part" : fmt::format("host '{}'", name_); }
 
@@ -38,7 +38,7 @@ Done HostPart::hear(double seconds) {
     return take(std::move(**heard));
   }
   const double silent = std::chrono::duration<double>(Clock::now() - heard_).count();
-  if (silent > kLost_s) return tl::unexpected(fmt::format("{} is lost: nothing was heard of it for {:.0f} s", title(), silent));
+  if (silent > lost_s_) return tl::unexpected(fmt::format("{} is lost: nothing was heard of it for {:.0f} s", title(), silent));
   return {};
 }
 
@@ -112,14 +112,14 @@ std::vector<std::string> HostPart::files() const {
 }
 
 Done HostPart::say(const json& message) {
-  const auto until = Clock::now() + std::chrono::duration<double>(kLost_s);
+  const auto until = Clock::now() + std::chrono::duration<double>(kTake_s);
   auto said = channel_->say(message, [&] { return Clock::now() < until; });
   if (!said) return tl::unexpected(fmt::format("{}: {}", title(), said.error()));
   return {};
 }
 
 Done HostPart::send(std::span<const std::byte> bytes) {
-  const auto until = Clock::now() + std::chrono::duration<double>(kLost_s);
+  const auto until = Clock::now() + std::chrono::duration<double>(kTake_s);
   auto sent = channel_->send(bytes, [&] { return Clock::now() < until; });
   if (!sent) return tl::unexpected(fmt::format("{}: {}", title(), sent.error()));
   return {};

@@ -13,7 +13,8 @@ class HostPart {
  public:
   using Log = std::function<void(const std::string& host, const std::string& block, int level, const std::string& text)>;
 
-  HostPart(std::string name, std::unique_ptr<Channel> channel, Log log);
+  /// A host that says nothing for `lost_s` is lost: it says something twice a second.
+  HostPart(std::string name, std::unique_ptr<Channel> channel, double lost_s, Log log);
 
   const std::string& name() const { return name_; }
   /// "host 'bench'", or "this machine".
@@ -56,6 +57,7 @@ class HostPart {
 
   std::string name_;
   std::unique_ptr<Channel> channel_;
+  double lost_s_;
   Log log_;
   std::chrono::steady_clock::time_point heard_;
   std::optional<nlohmann::json> answer_;

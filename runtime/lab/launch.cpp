@@ -58,6 +58,7 @@ class Launch {
     RunResult result;
     if (auto ready = begin(); !ready) {
       result = failed("", ready.error());
+      if (!stopped()) result.status = RunResult::Status::unreachable;
     } else {
       for (std::size_t i = 0; i < graph_.phases.size() && result.status == RunResult::Status::complete; ++i)
         result = run_phase_often(i);
@@ -68,6 +69,13 @@ class Launch {
 
  private:
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  /// The longest silence of a host that any phase bears.
+  double tolerance_s() const {
+    double most = 0.0;
+    for (const graph::Phase& phase : graph_.phases) most = std::max(most, phase.run.tolerance_s);
+    return most;
+  }
 
   static RunResult failed(const std::string& phase, std::string reason) {
     return {RunResult::Status::failed, phase, "", std::move(reason), {}, false};
@@ -97,6 +105,7 @@ class Launch {
                         {"file", graph_.file},
                         {"name", std::filesystem::path(graph_.file).stem().string()},
                         {"manifest", {{"run", run_}}},
+                        {"tolerance_s", tolerance_s()},
                         {"vector_level", options_.vector_level},
                         {"chunk", options_.plan.chunk.value_or(0)},
                         {"threads", options_.plan.threads.value_or(0)}};
@@ -143,7 +152,7 @@ class Launch {
   Done start(const std::string& host) {
     auto channel = Channel::open(participant_, run_, host, true);
     if (!channel) return tl::unexpected(channel.error());
-    parts_.push_back(std::make_unique<HostPart>(host, std::move(*channel),
+    parts_.push_back(std::make_unique<HostPart>(host, std::move(*channel), tolerance_s(),
                                                 [this](const auto& where, const auto& block, int level, const auto& text) {
                                                   directory_.log(where.empty() ? block : where + ": " + block, level, text);
                                                   if (options_.log) options_.log(where, block, level, text);
@@ -166,7 +175,8 @@ class Launch {
     if (std::chrono::duration<double>(Clock::now() - beaten_).count() < kBeat_s) return {};
     beaten_ = Clock::now();
     for (auto& part : parts_)
-      if (auto said = part->say({{"do", "beat"}}); !said) return said;
+      if (gone_.count(part.get()) == 0)
+        if (auto said = part->say({{"do", "beat"}}); !said) return said;
     return {};
   }
 
@@ -298,34 +308,32 @@ class Launch {
   /// Until all hosts have ended the phase; the first failure stops the others.
   tl::expected<void, Ended> watch(const graph::Phase& phase) {
     std::optional<Ended> why;
-    std::set<const HostPart*> lost;
     Clock::time_point stopping;
     const auto end_all = [&](Ended ended) {
       if (why) return;
       why = std::move(ended);
       stopping = Clock::now();
       for (auto& part : parts_)
-        if (!part->has_ended() && lost.count(part.get()) == 0) (void)part->say({{"do", "stop"}});
+        if (!part->has_ended() && gone_.count(part.get()) == 0) (void)part->say({{"do", "stop"}});
     };
     while (true) {
       if (stopped()) end_all({RunResult::Status::interrupted, "", "interrupted", {}});
       bool all = true;
       for (auto& part : parts_) {
-        if (lost.count(part.get()) > 0 || part->has_ended()) continue;
+        if (gone_.count(part.get()) > 0 || part->has_ended()) continue;
         if (auto heard = part->hear(0.02); !heard) {
-          lost.insert(part.get());
+          gone_.insert(part.get());
           end_all({RunResult::Status::failed, "", heard.error(), {}});
         } else if (part->has_ended() && !part->ended().value("complete", false)) {
           end_all(end_of(*part));
         }
-        all = all && (lost.count(part.get()) > 0 || part->has_ended());
+        all = all && (gone_.count(part.get()) > 0 || part->has_ended());
       }
       if (all) break;
       if (auto beaten = beat(); !beaten) end_all({RunResult::Status::failed, "", beaten.error(), {}});
       if (why && std::chrono::duration<double>(Clock::now() - stopping).count() > kWaitForStop_s) break;
       show(phase);
     }
-    lost_.insert(lost.begin(), lost.end());
     if (why) return tl::unexpected(*why);
     return {};
   }
@@ -399,11 +407,12 @@ class Launch {
   /// Brings the hosts' files here; then every host may go.
   void finish(RunResult& result) {
     for (auto& part : parts_) {
-      if (lost_.count(part.get()) > 0) continue;
+      if (gone_.count(part.get()) > 0) continue;
       if (auto collected = collect(*part, result); !collected) {
         if (result.status == RunResult::Status::complete) result = failed(result.phase, collected.error());
         options_.log(part->name(), "collection", BF_LOG_ERROR, collected.error());
       }
+      gone_.insert(part.get());
       (void)part->say({{"do", "bye"}});
       part->channel().drain(1.0);
     }
@@ -431,7 +440,7 @@ class Launch {
   std::shared_ptr<transport::Participant> participant_;
   OwnPart own_;
   std::vector<std::unique_ptr<HostPart>> parts_;
-  std::set<const HostPart*> lost_;
+  std::set<const HostPart*> gone_;  ///< lost, or dismissed
   std::set<std::string> stalled_;
   std::unique_ptr<transport::Board> board_;
   Clock::time_point beaten_, shown_;

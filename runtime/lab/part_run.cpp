@@ -10,6 +10,9 @@ namespace {
 /// What may be under way on a connection: a few chunks of it, at least this.
 constexpr std::uint64_t kLeastQueue = std::uint64_t{4} << 20;
 
+/// How many tolerances a connection may take to be made: processes that prove who they are take seconds on a busy machine.
+constexpr int kConnects = 3;
+
 std::uint64_t queue_bytes(const Cut& cut, const Rate& period, std::int64_t periods) {
   if (cut.message || period.num == 0) return std::uint64_t{80} << 20;
   const double samples = cut.facts.rate.hz() * period.hz() * static_cast<double>(periods);
@@ -71,7 +74,10 @@ tl::expected<void, std::string> PartPhase::open(const PartEnd& end, const std::s
   if (end.sends) {
     auto outlet = transport::open_outlet(participant, edge);
     if (!outlet) return failed(outlet.error());
-    if (auto connected = (*outlet)->connect(go_on); !connected) return failed(connected.error());
+    auto connected = (*outlet)->connect(go_on);
+    for (int more = 1; more < kConnects && !connected && connected.error().kind == transport::Failure::Kind::tolerance; ++more)
+      connected = (*outlet)->connect(go_on);
+    if (!connected) return failed(connected.error());
     link.outlet = outlet->get();
     made = cut.message ? make_record_outlet(name, cut, std::move(*outlet)) : make_sample_outlet(name, cut, std::move(*outlet));
   } else {

@@ -12,6 +12,7 @@
 #include "lab/channel.hpp"
 #include "lab/facts_json.hpp"
 #include "lab/part_run.hpp"
+#include "transport/service.hpp"
 
 namespace bodeflow::lab {
 namespace {
@@ -22,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kPoll_s = 0.05;
 /// How often a side says that it is there.
 constexpr double kBeat_s = 0.5;
-/// A side that says nothing for so long is lost.
+/// A launcher that says nothing for so long is lost, until it has told the graph's tolerance.
 constexpr double kLost_s = 10.0;
 constexpr std::size_t kPiece = std::size_t{4} << 20;
 
@@ -34,15 +35,24 @@ class PartServer {
       : task_(task),
         registry_(registry),
         stop_(stop),
+        topics_(task.settings, [this] { return !stop_ && !stop_phase_; }),
         services_([this](const std::string& block, int level, const std::string& text) {
           const std::lock_guard lock(mutex_);
           news_.push_back({{"event", "log"}, {"block", block}, {"level", level}, {"text", text}});
         }) {}
 
+  ~PartServer() {
+    stop_phase_ = true;
+    join_work();
+  }
+  PartServer(const PartServer&) = delete;
+  PartServer& operator=(const PartServer&) = delete;
+
   tl::expected<void, std::string> serve() {
     auto participant = transport::join(task_.settings);
     if (!participant) return tl::unexpected(participant.error());
     participant_ = *participant;
+    services_.provide(BF_EXTENSION_TRANSPORT, &topics_.c());
     auto channel = Channel::open(participant_, task_.run, task_.host, false);
     if (!channel) return tl::unexpected(channel.error());
     channel_ = std::move(*channel);
@@ -57,7 +67,7 @@ class PartServer {
         if (auto done = take(**heard); !done) return done;
       }
       if (auto told = tell(); !told) return lost(told.error());
-      if (since_heard() > kLost_s) return lost("nothing was heard of the launcher for 10 s");
+      if (since_heard() > lost_s_) return lost(fmt::format("nothing was heard of the launcher for {} s", lost_s_));
     }
     channel_->drain(2.0);
     return {};
@@ -69,7 +79,7 @@ class PartServer {
   using Done = tl::expected<void, std::string>;
 
   double since_heard() const { return std::chrono::duration<double>(Clock::now() - heard_).count(); }
-  bool here() const { return !stop_ && since_heard() < kLost_s; }
+  bool here() const { return !stop_ && since_heard() < lost_s_; }
   Done say(const json& message) {
     return channel_->say(message, [this] { return here(); });
   }
@@ -120,6 +130,7 @@ class PartServer {
     if (!directory) return {{"error", directory.error()}};
     directory_ = std::move(*directory);
     services_.attach(*directory_);
+    lost_s_ = said.at("tolerance_s").get<double>();
     options_.vector_level = said.at("vector_level").get<std::uint32_t>();
     plan_.chunk = said.at("chunk").get<std::int64_t>();
     plan_.threads = said.at("threads").get<int>();
@@ -293,10 +304,12 @@ class PartServer {
   std::deque<json> news_;
   std::optional<execute::Outcome> outcome_;
   execute::Progress progress_;
+  transport::Service topics_;  ///< of blocks; outlives them
   phases::Services services_;
   std::shared_ptr<transport::Participant> participant_;
   std::unique_ptr<Channel> channel_;
   Clock::time_point heard_, told_;
+  double lost_s_ = kLost_s;
   bool over_ = false, running_ = false, hung_ = false;
 
   struct {

@@ -19,7 +19,8 @@ struct RunOptions {
 };
 
 struct RunResult {
-  enum class Status { complete, rejected, failed, interrupted };
+  /// unreachable: a host of the lab is not there, or does not fit.
+  enum class Status { complete, rejected, failed, interrupted, unreachable };
   Status status = Status::complete;
   std::string phase;  ///< in which it ended
   std::string block;  ///< whose error ended it; may be empty

@@ -7,13 +7,6 @@
 namespace bodeflow::tools {
 namespace {
 
-struct AgentCommand {
-  LabOptions lab;
-  std::string name;
-  std::string directory;
-  double memory_gb = 0.0;
-};
-
 /// Where an agent keeps runs until their launcher fetches them.
 std::filesystem::path default_directory() {
   if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0')
@@ -23,7 +16,9 @@ std::filesystem::path default_directory() {
   return std::filesystem::temp_directory_path() / "bodeflow";
 }
 
-int agent(const Session& session, const AgentCommand& command) {
+}  // namespace
+
+int serve_lab(const Session& session, const AgentCommand& command) {
   if (const std::string problem = trust::name_problem(command.name); !problem.empty()) {
     say_error(fmt::format("--name '{}': {}", command.name, problem));
     return kUsage;
@@ -44,14 +39,13 @@ int agent(const Session& session, const AgentCommand& command) {
     task.command.push_back("--memory");
     task.command.push_back(fmt::format("{}", command.memory_gb));
   }
+  task.once = command.once;
   task.tell = [](const std::string& line) { say(line); };
   const auto served = lab::serve_agent(task, stop_on_interrupt());
   if (served) return kDone;
   say_error(served.error());
   return kDevice;
 }
-
-}  // namespace
 
 std::vector<std::string> part_command(const Session& session) {
   std::vector<std::string> command = {session.executable.string()};
@@ -70,7 +64,7 @@ void add_agent(CLI::App& app, Session& session) {
   command->add_option("--runs", options->directory, "Runs are kept below it until they are fetched")->type_name("DIR");
   command->add_option("--memory", options->memory_gb, "Most memory of one run [GB]")->check(CLI::PositiveNumber);
   options->lab.add_to(*command);
-  command->callback([&session, options] { session.action = [&session, options] { return agent(session, *options); }; });
+  command->callback([&session, options] { session.action = [&session, options] { return serve_lab(session, *options); }; });
 }
 
 }  // namespace bodeflow::tools

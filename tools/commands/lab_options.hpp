@@ -22,6 +22,18 @@ struct LabOptions {
   tl::expected<transport::Settings, std::string> settings(const std::string& host) const;
 };
 
+/// What `bodeflow agent` is told.
+struct AgentCommand {
+  LabOptions lab;
+  std::string name;
+  std::string directory;  ///< of runs; empty: the usual one
+  double memory_gb = 0.0;
+  bool once = false;  ///< one run, then it ends
+};
+
+/// Serves the lab as an agent; the exit code.
+int serve_lab(const Session& session, const AgentCommand& command);
+
 /// The command of a process that runs one host's part; its options follow.
 std::vector<std::string> part_command(const Session& session);
 

@@ -22,6 +22,7 @@ struct RunCommand {
   std::string isa;
   bool dry_run = false;
   bool here = false;
+  std::string host;
   LabOptions lab;
 };
 
@@ -35,6 +36,7 @@ int dry_run(const RunCommand& command, const graph::Graph& graph, Registry& regi
 }
 
 int run(const Session& session, const RunCommand& command) {
+  if (!command.host.empty()) return serve_lab(session, {command.lab, command.host, "", 0.0, true});
   RunGraph options;
   options.vector_level = command.isa.empty() ? processor_vector_level() : vector_level_of(command.isa);
   if (options.vector_level > processor_vector_level()) {
@@ -91,6 +93,8 @@ void add_run(CLI::App& app, Session& session) {
   command->add_option("--isa", options->isa, "Widest vector unit of kernels (this processor's otherwise)")
       ->check(CLI::IsMember(vector_level_names()));
   command->add_flag("--dry-run", options->dry_run, "Check and plan, show what would run, run nothing");
+  command->add_option("--host", options->host, "Serve one run as this host of the graph, by hand, in place of an agent")
+      ->type_name("NAME");
   command->add_flag("--here", options->here, "All blocks in this process, whatever hosts the graph names");
   options->lab.add_to(*command);
   options->graph.add_json_to(*command);

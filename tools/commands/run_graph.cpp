@@ -49,6 +49,8 @@ int exit_code_of(phases::RunResult::Status status) {
       return kInterrupted;
     case phases::RunResult::Status::rejected:
       return kRejected;
+    case phases::RunResult::Status::unreachable:
+      return kDevice;
     default:
       return kRunFailed;
   }

@@ -179,7 +179,12 @@ tl::expected<void, std::string> add_peers(dds::DomainParticipantQos& qos, const 
     if (servers) {
       add_server(qos, *address, carrier, i);
     } else {
-      builtin.initialPeersList.push_back(locator(*address, carrier));
+      auto peer = locator(*address, carrier);
+      // Behind each TCP port there is one participant, so its logical port is that of the domain's first.
+      if (carrier == Carrier::tcp) {
+        IPLocator::setLogicalPort(peer, static_cast<std::uint16_t>(qos.wire_protocol().port.getUnicastPort(settings.domain, 0)));
+      }
+      builtin.initialPeersList.push_back(peer);
     }
   }
   return {};

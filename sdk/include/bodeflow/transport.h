@@ -2,7 +2,8 @@
 #define BODEFLOW_TRANSPORT_H
 
 /* Topics of the network, as a service of the host. What travels is the struct bodeflow::Message of bodeflow.idl, so that any
- * DDS program can take part. A block asks for it by id: host->extension(host, BF_EXTENSION_TRANSPORT); NULL: the host has none. */
+ * DDS program can take part. A block asks for it by id: host->extension(host, BF_EXTENSION_TRANSPORT); NULL: the host has none.
+ */
 
 #include <bodeflow/abi.h>
 

@@ -16,7 +16,7 @@ void run_and_stop(bool is_tcp) {
   DriveClient client(bench.setup());
   REQUIRE(client.run_up() == "");
   CHECK(bench.enabled());
-  CHECK(bench.speed() == Approx(300).margin(40));  // it has just come there
+  CHECK(bench.speed() == Approx(300).margin(40));                                 // it has just come there
   CHECK(bench.server().with_drive([](auto& d) { return d.read(0x12); }) == 800);  // the watchdog, ms
   const Stopped stopped = client.poller().stop();
   CHECK(stopped.confirmed);

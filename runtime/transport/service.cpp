@@ -1,5 +1,6 @@
 #include "transport/service.hpp"
 
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -33,6 +34,17 @@ class Aligned {
   std::unique_ptr<std::uint8_t, Free> bytes_;
   std::size_t size_ = 0;
 };
+
+/// As `go_on`, but a no counts half a second later: who stopped the run notes that first, and the block's failure is not the
+/// reason.
+GoOn patient(const GoOn& go_on) {
+  if (!go_on) return {};
+  return [go_on, since = std::optional<std::chrono::steady_clock::time_point>()]() mutable {
+    if (go_on()) return true;
+    if (!since) since = std::chrono::steady_clock::now();
+    return std::chrono::steady_clock::now() - *since < std::chrono::milliseconds(500);
+  };
+}
 
 struct TopicWriter {
   std::unique_ptr<Outlet> outlet;
@@ -112,7 +124,7 @@ struct ServiceFunctions {
                     edge.epoch = static_cast<std::uint32_t>(std::time(nullptr));  // a writer that comes later is higher
                     auto outlet = open_outlet(participant, edge);
                     if (!outlet) return tl::unexpected(outlet.error().text);
-                    return new TopicWriter{std::move(*outlet), service.go_on_, {}};
+                    return new TopicWriter{std::move(*outlet), patient(service.go_on_), {}};
                   });
   }
 
@@ -121,7 +133,7 @@ struct ServiceFunctions {
                   [](Service& service, const auto& participant, const Edge& edge) -> tl::expected<void*, std::string> {
                     auto inlet = open_inlet(participant, edge);
                     if (!inlet) return tl::unexpected(inlet.error().text);
-                    return new TopicReader{std::move(*inlet), service.go_on_, {}, {}, {}};
+                    return new TopicReader{std::move(*inlet), patient(service.go_on_), {}, {}, {}};
                   });
   }
 

@@ -52,6 +52,12 @@ int Process::wait() {
 
 void Process::signal(int number) const { kill(-pid_, number); }
 
+void Process::interrupt() const {
+  const auto id = std::to_string(pid_);
+  std::ifstream children("/proc/" + id + "/task/" + id + "/children");
+  if (int child = 0; children >> child) kill(child, SIGINT);
+}
+
 std::string Process::output() const {
   std::ifstream file(file_);
   std::stringstream text;

@@ -17,6 +17,8 @@ class Process {
   /// The exit code; 124 after a minute.
   int wait();
   void signal(int number) const;
+  /// SIGINT to the command alone, once: `timeout` would hand it on a second time.
+  void interrupt() const;
   /// What it has printed so far.
   std::string output() const;
   /// Waits until it has printed that; false: it ended or `seconds` passed before.

@@ -54,7 +54,7 @@ std::string five_hundred_blocks() {
       if (b == 4 && chain % 3 == 0)
         text += fmt::format("  b{}_{}: {{block: filters.delay, samples: 17}}\n", chain, b);
       else if (b == 5 && chain % 5 == 0)
-        text += fmt::format("  b{}_{}: {{block: filters.decimate, factor: 4}}\n", chain, b);
+        text += fmt::format("  b{}_{}: {{block: filters.decimate, factor: 4, anti_alias: false}}\n", chain, b);
       else
         text += fmt::format("  b{}_{}: {{block: filters.gain, gain: {}}}\n", chain, b, 1.0 + 0.01 * b);
       connections += fmt::format(" -> b{}_{}", chain, b);

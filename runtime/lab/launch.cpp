@@ -85,7 +85,8 @@ class Launch {
     auto participant = transport::join(options_.settings);
     if (!participant) return tl::unexpected(participant.error());
     participant_ = *participant;
-    const std::vector<std::string> hosts = hosts_of(graph_);
+    std::vector<std::string> hosts = hosts_of(graph_);
+    std::sort(hosts.begin(), hosts.end());  // our own part first: it starts while the agents are asked
     std::vector<std::string> others;
     for (const std::string& host : hosts)
       if (!host.empty()) others.push_back(host);

@@ -59,7 +59,8 @@ tl::expected<void, Problems> PartPhase::prepare(const plan::Facts& facts, const 
     instances_[i] = std::move(made->second);
     auto said = instances_[i]->advise(part_.facts.blocks[i].inputs, part_.facts.blocks[i].outputs);
     if (!said) return tl::unexpected(Problems{{block.place, fmt::format("block '{}': {}", block.name, said.error())}});
-    for (const AdviceText& text : *said) services.host()->log(block.name, text.level, text.text);
+    for (const AdviceText& text : *said)
+      if (text.level >= BF_LOG_WARNING) services.host()->log(block.name, text.level, text.text);
   }
   return {};
 }

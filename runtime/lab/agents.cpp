@@ -29,6 +29,7 @@ const std::string kBoard = "bodeflow/agents";
 std::string mailbox_of(const std::string& agent) { return "bodeflow/agent/" + agent; }
 
 constexpr int kLooks = 20;  ///< of 50 ms
+constexpr auto kReceipt = std::chrono::milliseconds(500);
 constexpr double kClock_s = 3.0;
 constexpr std::size_t kMostClocks = 8;
 
@@ -50,7 +51,7 @@ class Agent {
  public:
   Agent(const AgentTask& task, const std::atomic<bool>& stop) : task_(task), stop_(stop) {}
 
-  tl::expected<void, std::string> serve() {
+  tl::expected<bool, std::string> serve() {
     auto participant = transport::join(task_.settings);
     if (!participant) return tl::unexpected(participant.error());
     participant_ = *participant;
@@ -61,13 +62,13 @@ class Agent {
     if (is_taken(**board)) return tl::unexpected(fmt::format("the lab has an agent called '{}' already", task_.info.name));
     task_.tell(fmt::format("agent '{}' is there: {} plugins, runs below '{}'", task_.info.name, task_.info.plugins.size(),
                            task_.directory.string()));
-    while (!stop_ && !(task_.once && served_ > 0 && children_.empty())) {
-      if (auto said = say_hello(**board); !said) return said;
+    while (!stop_ && !renewed_ && !(task_.once && served_ > 0 && children_.empty())) {
+      if (auto said = say_hello(**board); !said) return tl::unexpected(said.error());
       if (const auto text = (*mailbox)->receive(0.2)) take(*text);
       reap();
     }
     end_children();
-    return {};
+    return renewed_;
   }
 
  private:
@@ -97,6 +98,11 @@ class Agent {
     const json wish = json::parse(text, nullptr, false);
     if (wish.is_object() && wish.contains("clock") && wish["clock"].is_string() && is_plain(wish["clock"].get<std::string>()))
       return tell_time(wish["clock"].get<std::string>());
+    if (wish.is_object() && wish.contains("revoked") && wish["revoked"].is_string()) {
+      renewed_ = task_.take_revocations && task_.take_revocations(wish["revoked"].get<std::string>());
+      if (renewed_) std::this_thread::sleep_for(kReceipt);  // the sender still waits for our receipt
+      return;
+    }
     const std::string run =
         wish.is_object() && wish.contains("start") && wish["start"].is_string() ? wish["start"].get<std::string>() : "";
     if (!is_plain(run)) return task_.tell("a message that is no request was dropped");
@@ -155,6 +161,7 @@ class Agent {
   std::vector<std::future<void>> clocks_;
   std::string said_;
   int served_ = 0;
+  bool renewed_ = false;  ///< the list of revoked certificates
 };
 
 }  // namespace
@@ -237,8 +244,26 @@ tl::expected<std::vector<AgentInfo>, std::string> Lab::wait_for(const std::vecto
   }
 }
 
-tl::expected<void, std::string> serve_agent(const AgentTask& task, const std::atomic<bool>& stop) {
+tl::expected<bool, std::string> serve_agent(const AgentTask& task, const std::atomic<bool>& stop) {
   return Agent(task, stop).serve();
+}
+
+tl::expected<std::vector<std::string>, std::string> tell_revocations(const std::shared_ptr<transport::Participant>& participant,
+                                                                     const std::string& pem, double seconds) {
+  auto lab = Lab::watch(participant);
+  if (!lab) return tl::unexpected(lab.error());
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  std::vector<std::string> told;
+  std::string missed;
+  for (const AgentInfo& agent : (*lab)->agents()) {
+    const auto posted = transport::post(participant, mailbox_of(agent.name), json{{"revoked", pem}}.dump(), seconds);
+    if (posted)
+      told.push_back(agent.name);
+    else
+      missed += (missed.empty() ? "" : "; ") + posted.error().text;
+  }
+  if (!missed.empty()) return tl::unexpected("not all agents have the new list: " + missed);
+  return told;
 }
 
 tl::expected<void, std::string> ask_for_part(const std::shared_ptr<transport::Participant>& participant, const std::string& agent,

@@ -50,10 +50,17 @@ struct AgentTask {
   std::vector<std::string> command;              ///< of a part's process; its own options follow
   std::function<void(const std::string&)> tell;  ///< a line for people
   bool once = false;                             ///< ends with the first run
+  /// Takes a new list of revoked certificates (PEM); true: it is a later one of the lab's authority.
+  std::function<bool(const std::string& pem)> take_revocations;
 };
 
-/// Serves the lab until `stop`: starts a process for each part that a launcher asks for. Error: why it can't.
-tl::expected<void, std::string> serve_agent(const AgentTask& task, const std::atomic<bool>& stop);
+/// Serves the lab until `stop`: starts a process for each part that a launcher asks for. True: it has got a new list of revoked
+/// certificates, has ended its runs, and must join anew. Error: why it can't serve.
+tl::expected<bool, std::string> serve_agent(const AgentTask& task, const std::atomic<bool>& stop);
+
+/// Sends a list of revoked certificates (PEM) to all agents that are there; their names. Error: why not.
+tl::expected<std::vector<std::string>, std::string> tell_revocations(const std::shared_ptr<transport::Participant>& participant,
+                                                                     const std::string& pem, double seconds);
 
 /// Asks an agent to start its part of a run. Error: why it does not.
 tl::expected<void, std::string> ask_for_part(const std::shared_ptr<transport::Participant>& participant, const std::string& agent,

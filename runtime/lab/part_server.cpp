@@ -260,12 +260,12 @@ class PartServer {
       const std::span<const std::byte> bytes(reinterpret_cast<const std::byte*>(record.bytes()), record.size());
       if (auto sent = channel_->send(bytes, [this] { return here(); }); !sent) return sent;
     }
-    part_.reset();
     return {};
   }
 
-  /// Closes the run directory and sends its files.
+  /// Closes the run directory and sends its files. All hosts have ended their phases: nobody reads from our links any more.
   json close(const json& said) {
+    part_.reset();
     const auto closed = directory_->close(said.at("status").get<std::string>(), said.at("reason").get<std::string>());
     json files = json::array();
     for (const auto& entry : std::filesystem::recursive_directory_iterator(task_.directory))

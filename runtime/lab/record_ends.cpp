@@ -72,12 +72,7 @@ class RecordOutlet final : public End {
     return {};
   }
 
-  Result finish(BlockRun& block) override {
-    Lane& lane = execute::last_lane_of(block);
-    if (auto sent = send_stage(Stage::finished, block, lane); !sent) return sent;
-    const auto drained = outlet_->drain([&] { return execute::goes_on(block, lane); });
-    return drained ? Result{} : Result(tl::unexpected(text_of(cut_, drained.error())));
-  }
+  Result finish(BlockRun& block) override { return send_stage(Stage::finished, block, execute::last_lane_of(block)); }
 
  private:
   bool done(BlockRun& block, const Result& result) {

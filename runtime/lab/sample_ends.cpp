@@ -54,12 +54,7 @@ class SampleOutlet final : public End {
     return {};
   }
 
-  Result finish(execute::BlockRun& block) override {
-    execute::Lane& lane = execute::last_lane_of(block);
-    if (auto sent = send_end(block, lane); !sent) return sent;
-    const auto drained = outlet_->drain([&] { return execute::goes_on(block, lane); });
-    return drained ? Result{} : Result(tl::unexpected(text_of(cut_, drained.error())));
-  }
+  Result finish(execute::BlockRun& block) override { return send_end(block, execute::last_lane_of(block)); }
 
  private:
   transport::Header head(transport::Kind kind, std::uint64_t position) const {

@@ -114,3 +114,32 @@ TEST_CASE("lab: hosts with certificates of the lab run together and strangers st
   REQUIRE(code == 0);
   CHECK(lab.hashes("hosts") == lab.hashes("here"));
 }
+
+TEST_CASE("lab: a revoked host is kept out once the agents have heard of it") {
+  const Hosts hosts(3);
+  if (skipped(hosts)) return;
+  const bodeflow::test::Folder authority;
+  const std::string folder = (authority.path() / "trust").string();
+  const std::string trust = std::string(BODEFLOW_COMMAND " trust ");
+  REQUIRE(shell(trust + "init --lab test --dir " + folder + " > /dev/null") == 0);
+  for (const std::string name : {"bench", "controller", "desk"}) {
+    const std::string own = (authority.path() / name).string();
+    REQUIRE(shell(trust + "add " + name + " --dir " + folder + " --out " + own + ".tar > /dev/null") == 0);
+    REQUIRE(shell("mkdir " + own + " && tar -xf " + own + ".tar -C " + own) == 0);
+  }
+  TestLab lab(network_options({}));
+  const auto agent = [&](const std::string& name, int host) -> Process& {
+    return lab.agent(name, {"--trust", (authority.path() / name).string(), "--interface", Hosts::address(host)},
+                     hosts.on(host, {}));
+  };
+  Process& bench = agent("bench", 1);
+  Process& controller = agent("controller", 2);
+
+  Process revoke(hosts.on(0, {BODEFLOW_COMMAND, "trust", "revoke", "controller", "--dir", folder, "--tell-as", "desk", "--domain",
+                              std::to_string(test_domain()), "--interface", Hosts::address(0)}));
+  REQUIRE(revoke.wait() == 0);
+  CHECK(revoke.output().find("The agent of 'bench' has been sent the new list") != std::string::npos);
+  CHECK(bench.prints("joining anew"));
+  CHECK(controller.wait() == 2);
+  CHECK(controller.output().find("the certificate of host 'controller' is revoked") != std::string::npos);
+}

@@ -23,15 +23,9 @@ int serve_lab(const Session& session, const AgentCommand& command) {
     say_error(fmt::format("--name '{}': {}", command.name, problem));
     return kUsage;
   }
-  auto settings = command.lab.settings(command.name);
-  if (!settings) {
-    say_error(settings.error());
-    return kUsage;
-  }
   const Registry registry = session.open_registry();
   lab::AgentTask task;
   task.info = this_machine(session, registry, command.name);
-  task.settings = std::move(*settings);
   task.directory =
       std::filesystem::absolute(command.directory.empty() ? default_directory() : std::filesystem::path(command.directory));
   task.command = part_command(session);
@@ -41,10 +35,26 @@ int serve_lab(const Session& session, const AgentCommand& command) {
   }
   task.once = command.once;
   task.tell = [](const std::string& line) { say(line); };
-  const auto served = lab::serve_agent(task, stop_on_interrupt());
-  if (served) return kDone;
-  say_error(served.error());
-  return kDevice;
+  task.take_revocations = [&command](const std::string& pem) {
+    const auto taken = trust::take_revocations(command.lab.trust_folder(), pem);
+    if (!taken) say_warning(taken.error());
+    return taken && *taken;
+  };
+  while (true) {
+    auto settings = command.lab.settings(command.name);  // each time: this host may be revoked by now
+    if (!settings) {
+      say_error(settings.error());
+      return kUsage;
+    }
+    task.settings = std::move(*settings);
+    const auto again = lab::serve_agent(task, stop_on_interrupt());
+    if (!again) {
+      say_error(again.error());
+      return kDevice;
+    }
+    if (!*again) return kDone;
+    say("a new list of revoked hosts has come: joining anew");
+  }
 }
 
 std::vector<std::string> part_command(const Session& session) {

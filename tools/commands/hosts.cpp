@@ -1,6 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <cmath>
+#include <algorithm>
 #include <thread>
 
 #include "commands/lab_options.hpp"
@@ -32,18 +33,22 @@ std::string difference(const lab::AgentInfo& theirs, const lab::AgentInfo& mine)
 }
 
 void print_table(const std::vector<Host>& hosts) {
-  fmt::print("{:<12} {:<18} {:<8} {:>7} {:>5} {:>5} {:<8} {:>24} {}\n", bold("host"), "machine", "version", "plugins", "cores",
-             "load", "vector", "clock - ours", "runs");
+  std::size_t name = std::string_view("host").size(), machine = std::string_view("machine").size();
+  for (const Host& host : hosts) {
+    name = std::max(name, host.agent.name.size());
+    machine = std::max(machine, host.agent.system.size());
+  }
+  fmt::print("{} {:<{}} {:<8} {:>7} {:>5} {:>5} {:<10} {:>22} {}\n", bold(fmt::format("{:<{}}", "host", name)), "machine",
+             machine, "version", "plugins", "cores", "load", "vector", "clock - ours", "runs");
   for (const Host& host : hosts) {
     const std::string clock =
         host.clock ? fmt::format("{:+.3f} +- {:.3f} ms", host.clock->offset_s * 1e3, host.clock->uncertainty_s * 1e3)
                    : std::string("no answer");
-    std::string runs;
-    for (const std::string& run : host.agent.runs) runs += (runs.empty() ? "" : ", ") + run;
-    fmt::print("{:<12} {:<18} {:<8} {:>7} {:>5} {:>5.1f} {:<8} {:>24} {}\n", host.agent.name, host.agent.system,
+    fmt::print("{:<{}} {:<{}} {:<8} {:>7} {:>5} {:>5.1f} {:<10} {:>22} {}\n", host.agent.name, name, host.agent.system, machine,
                host.agent.version, host.agent.plugins.size(), host.agent.processors, host.agent.load,
-               vector_level_name(host.agent.vector_level), clock, runs.empty() ? "-" : runs);
-    if (!host.differs.empty()) fmt::print("{:<12} {}\n", "", host.differs);
+               vector_level_name(host.agent.vector_level), clock,
+               host.agent.runs.empty() ? "-" : fmt::format("{}", fmt::join(host.agent.runs, ", ")));
+    if (!host.differs.empty()) fmt::print("{:<{}} {}\n", "", name, host.differs);
   }
 }
 

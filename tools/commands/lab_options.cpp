@@ -48,6 +48,10 @@ void LabOptions::add_to(CLI::App& app) {
   app.add_flag("--let-anyone-on-the-network-in", let_anyone_in,
                "No certificates: whoever reaches this machine's network may run graphs in this lab")
       ->group("Lab");
+  add_network_to(app);
+}
+
+void LabOptions::add_network_to(CLI::App& app) {
   app.add_option("--interface", interfaces, "IP address of an interface to use (all otherwise)")
       ->allow_extra_args(false)
       ->group("Lab");
@@ -60,6 +64,8 @@ void LabOptions::add_to(CLI::App& app) {
       ->check(CLI::Range(0, 232))
       ->group("Lab");
 }
+
+fs::path LabOptions::trust_folder() const { return trust.empty() ? trust::default_folder() : fs::path(trust); }
 
 tl::expected<transport::Settings, std::string> LabOptions::settings(const std::string& host) const {
   transport::Settings made;
@@ -76,7 +82,7 @@ tl::expected<transport::Settings, std::string> LabOptions::settings(const std::s
   }
   if (only_loopback(made.interfaces) && trust.empty()) return made;
   if (let_anyone_in) return made;
-  const fs::path folder = trust.empty() ? trust::default_folder() : fs::path(trust);
+  const fs::path folder = trust_folder();
   const std::string name = host.empty() && !folder.empty() ? only_host(folder) : host;
   if (!folder.empty() && fs::exists(folder)) {
     auto security = trust::security_of(folder, name);

@@ -17,6 +17,10 @@ struct LabOptions {
   std::uint32_t domain = 0;
 
   void add_to(CLI::App& app);
+  /// Only what tells how to reach the others.
+  void add_network_to(CLI::App& app);
+  /// --trust, or the usual folder; may be empty.
+  std::filesystem::path trust_folder() const;
   /// `host`: whose certificate this process uses; empty: the only one in the folder of trust. Error: also where the network would
   /// be open to strangers without the words that allow it.
   tl::expected<transport::Settings, std::string> settings(const std::string& host) const;

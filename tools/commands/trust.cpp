@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "commands/command.hpp"
+#include "commands/lab_options.hpp"
 #include "console/json_output.hpp"
 #include "trust/lab.hpp"
 
@@ -17,6 +20,8 @@ struct Options {
   trust::NewLab lab;
   trust::NewHost host;
   std::string bundle;
+  std::string tell_as;  ///< host in whose name the new list is sent to the agents
+  LabOptions network;
 
   std::filesystem::path where() const {
     const std::filesystem::path path = folder.empty() ? trust::default_folder() : std::filesystem::path(folder);
@@ -116,8 +121,33 @@ int list_hosts(const Options& options) {
   return kDone;
 }
 
+using Participant = std::shared_ptr<transport::Participant>;
+
+/// The lab, joined as host --tell-as; nobody without that option. With the list as it still is: who is about to be revoked hears
+/// of it too.
+tl::expected<Participant, std::string> join_lab(const Options& options, const std::filesystem::path& where) {
+  if (options.tell_as.empty()) return Participant();
+  LabOptions network = options.network;
+  network.trust = where.string();
+  const auto settings = network.settings(options.tell_as);
+  if (!settings) return tl::unexpected(settings.error());
+  return transport::join(*settings);
+}
+
+int tell_agents(const Participant& participant, const std::string& list) {
+  std::ifstream in(list);
+  const std::string pem{std::istreambuf_iterator<char>(in), {}};
+  const auto told = lab::tell_revocations(participant, pem, 3.0);
+  if (!told) return failed(told.error(), kDevice);
+  for (const std::string& agent : *told) fmt::print("The agent of '{}' has been sent the new list and joins anew.\n", agent);
+  if (told->empty()) fmt::print("No agent is in the lab now.\n");
+  return kDone;
+}
+
 int revoke_host(const Options& options) {
   const auto where = options.where();
+  const auto participant = join_lab(options, where);
+  if (!participant) return failed(participant.error(), kDevice);
   const auto host = trust::revoke(where, options.host.name, now());
   if (!host) return failed(host.error());
   const std::string list = trust::Files(where).revocations.string();
@@ -125,10 +155,16 @@ int revoke_host(const Options& options) {
     auto all = json_of(*host);
     all["revocations"] = list;
     print_json(all);
-    return kDone;
+  } else {
+    fmt::print("Host '{}' is revoked.\n", host->name);
   }
-  fmt::print("Host '{}' is revoked. The other hosts refuse it from their next start with the new list on:\n", host->name);
-  fmt::print("copy {} into the folder of trust of each, and restart their agents.\n", list);
+  if (*participant) return tell_agents(*participant, list);
+  if (options.json) return kDone;
+  fmt::print(
+      "The other hosts refuse it from their next start with the new list on: copy {} into the folder of trust of each, and "
+      "restart\n"
+      "their agents; or let --tell-as HOST send it to all agents of the lab.\n",
+      list);
   return kDone;
 }
 
@@ -166,6 +202,9 @@ void add_trust(CLI::App& app, Session& session) {
 
   auto* revoke = command->add_subcommand("revoke", "Put a host on the list of those that are no longer trusted");
   revoke->add_option("host", options->host.name, "Name of the host")->required();
+  revoke->add_option("--tell-as", options->tell_as, "Send the new list to all agents of the lab, in the name of this host")
+      ->type_name("HOST");
+  options->network.add_network_to(*revoke);
   revoke->callback([&session, options] { session.action = [options] { return revoke_host(*options); }; });
 }
 

@@ -96,7 +96,7 @@ class Screen {
   std::map<std::string, Before> before_;
 };
 
-std::vector<json> look(const transport::Board& board) {
+std::vector<json> look(transport::Board& board) {
   std::vector<json> runs;
   for (const std::string& text : board.texts())
     if (json run = json::parse(text, nullptr, false); run.is_object()) runs.push_back(std::move(run));

@@ -4,6 +4,7 @@
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <sys/socket.h>
+#include <sys/statvfs.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -24,8 +25,10 @@ using Carrier = Settings::Carrier;
 using eprosima::fastrtps::Duration_t;
 using eprosima::fastrtps::rtps::IPLocator;
 
-constexpr std::uint32_t kSocketBuffer = 4u << 20;   // a burst of 1 MB samples; the kernel may grant less
-constexpr std::uint32_t kSegment = 16u << 20;       // of shared memory, touched whole when it is made
+constexpr std::uint32_t kSocketBuffer = 4u << 20;                   // a burst of 1 MB samples; the kernel may grant less
+constexpr std::uint64_t kLargestSegment = std::uint64_t{16} << 20;  // of shared memory, touched whole when it is made
+constexpr std::uint64_t kSmallestSegment = std::uint64_t{2} << 20;
+constexpr std::uint64_t kSegmentShare = 8;          // of what is free: many processes fit even where a container has 64 MB
 constexpr std::uint32_t kSharedMessage = 1u << 20;  // larger samples go in pieces
 constexpr std::uint32_t kPeerRange = 8;             // participants that a peer without a port may have on its host
 constexpr std::uint16_t kServerPort = 11811;
@@ -51,6 +54,14 @@ tl::expected<Address, std::string> parse_address(const std::string& text) {
   return address;
 }
 
+/// Bytes of a new segment; 0: there is no room for one.
+std::uint32_t segment_size() {
+  struct statvfs space {};
+  if (statvfs("/dev/shm", &space) != 0) return 0;
+  const std::uint64_t mine = std::uint64_t{space.f_bavail} * space.f_frsize / kSegmentShare;
+  return mine < kSmallestSegment ? 0 : static_cast<std::uint32_t>(std::min(mine, kLargestSegment));
+}
+
 void add_transport(dds::DomainParticipantQos& qos, const Settings& settings, Carrier carrier) {
   using namespace eprosima::fastdds::rtps;
   auto interfaces = settings.interfaces;
@@ -59,7 +70,7 @@ void add_transport(dds::DomainParticipantQos& qos, const Settings& settings, Car
   qos.transport().use_builtin_transports = false;
   if (carrier == Carrier::shared_memory) {
     auto memory = std::make_shared<SharedMemTransportDescriptor>();
-    memory->segment_size(kSegment);
+    memory->segment_size(segment_size());
     memory->max_message_size(kSharedMessage);
     transports.push_back(memory);
   } else if (carrier == Carrier::tcp) {
@@ -317,6 +328,8 @@ namespace bodeflow::transport::middleware {
 
 tl::expected<std::shared_ptr<Node>, std::string> join(const Settings& settings, Settings::Carrier carrier) {
   fast_dds::catch_errors();
+  if (carrier == Settings::Carrier::shared_memory && fast_dds::segment_size() == 0)
+    return tl::unexpected<std::string>("shared memory (/dev/shm) has no room for a segment of 2 MB");
   fast_dds::TcpPort port;
   if (carrier == Settings::Carrier::tcp) {
     port = fast_dds::claim_tcp_port(settings.domain);

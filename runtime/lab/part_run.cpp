@@ -132,6 +132,11 @@ execute::Outcome PartPhase::run(const std::vector<execute::InitialRecord>& initi
   return outcome;
 }
 
+void PartPhase::drain(const transport::GoOn& go_on) {
+  for (const Link& link : links_)
+    if (link.sends) (void)link.outlet->drain(go_on);
+}
+
 nlohmann::json PartPhase::links() const {
   nlohmann::json list = nlohmann::json::array();
   for (const Link& link : links_) {

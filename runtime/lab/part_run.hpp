@@ -29,6 +29,8 @@ class PartPhase {
   execute::Outcome run(const std::vector<execute::InitialRecord>& initial, record::RunDirectory& directory, int repeat,
                        execute::Options options);
 
+  /// Waits until the other hosts have what was sent to them, or are lost.
+  void drain(const transport::GoOn& go_on);
   /// The links as they are, for people: name, direction and state.
   nlohmann::json links() const;
   /// Message outputs of this host's blocks, as block and port names.
@@ -41,7 +43,7 @@ class PartPhase {
   struct Link {
     std::string name, host;
     bool sends = false;
-    const transport::Outlet* outlet = nullptr;
+    transport::Outlet* outlet = nullptr;
     const transport::Inlet* inlet = nullptr;
   };
 

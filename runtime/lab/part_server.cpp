@@ -140,6 +140,7 @@ class PartServer {
   json make_phase(const json& said) {
     phase_ = &graph_->phases.at(said.at("phase").get<std::size_t>());
     repeat_ = said.at("repeat").get<int>();
+    complete_ = false;
     auto made = PartPhase::make(*phase_, task_.host, registry_, services_);
     if (!made) return problems_answer(made.error());
     part_ = std::move(*made);
@@ -236,6 +237,7 @@ class PartServer {
   Done tell_end(const execute::Outcome& outcome) {
     join_work();
     running_ = false;
+    complete_ = outcome.status == execute::Outcome::Status::complete;
     if (outcome.hung) part_->abandon();
     hung_ = hung_ || outcome.hung;
     json ended = {{"event", "ended"},
@@ -293,7 +295,10 @@ class PartServer {
   Done lost(const std::string& why) {
     if (running_ && !phase_->run.survives_launcher) stop_phase_ = true;
     join_work();
-    if (directory_) (void)directory_->close(stop_phase_ ? "partial" : "complete", "the launcher was lost: " + why);
+    if (outcome_) complete_ = outcome_->status == execute::Outcome::Status::complete;
+    const bool complete = complete_ && phase_ == &graph_->phases.back();
+    if (part_ && complete_) part_->drain([this] { return !stop_; });
+    if (directory_) (void)directory_->close(complete ? "complete" : "partial", "the launcher was lost: " + why);
     return tl::unexpected(fmt::format("{}; what was recorded is in '{}'", why, task_.directory.string()));
   }
 
@@ -321,6 +326,7 @@ class PartServer {
   std::unique_ptr<record::RunDirectory> directory_;
   const graph::Phase* phase_ = nullptr;
   int repeat_ = 0;
+  bool complete_ = false;  ///< the phase
   std::vector<SharedRecord> initial_;
   std::atomic<bool> stop_phase_{false};
   std::thread work_;

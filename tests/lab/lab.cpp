@@ -1,5 +1,8 @@
 #include "lab.hpp"
 
+#include <filesystem>
+#include <thread>
+
 #include "catch.hpp"
 
 namespace bodeflow::test {
@@ -48,6 +51,16 @@ std::vector<std::string> TestLab::run_here(const std::string& graph, const std::
 
 nlohmann::json TestLab::hashes(const std::string& out) const {
   return nlohmann::json::parse(folder_.read(out + "/manifest.json"))["hashes"];
+}
+
+bool TestLab::has_graph(const std::string& agent) const {
+  namespace fs = std::filesystem;
+  for (int i = 0; i < 200; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
+    std::error_code error;
+    for (const auto& run : fs::directory_iterator(path("agent_" + agent), error))
+      if (fs::exists(run.path() / "graph.yaml", error)) return true;
+  }
+  return false;
 }
 
 void TestLab::crash(const std::string& agent) const { (void)shell("pkill -9 -f -- '--runs " + path("agent_" + agent) + " '"); }

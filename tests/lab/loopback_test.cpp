@@ -161,7 +161,7 @@ TEST_CASE("lab: a killed launcher ends the parts of its run and the agent serves
   Process& bench = lab.agent("bench");
   {
     Process run(lab.run(lab.folder().write("paced.yaml", kPaced).string(), "out"));
-    REQUIRE(bench.prints("begins"));
+    REQUIRE(lab.has_graph("bench"));
     std::this_thread::sleep_for(std::chrono::seconds(1));
     (void)shell("pkill -9 -f -- '^" BODEFLOW_COMMAND " run .*--out " + lab.path("out") + " '");
   }

@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kPoll_s = 0.05;
 /// How often a side says that it is there.
-constexpr double kBeat_s = 0.5;
+constexpr double kBeat_s = 0.2;
 /// A launcher that says nothing for so long is lost, until it has told the graph's tolerance.
 constexpr double kLost_s = 10.0;
 constexpr std::size_t kPiece = std::size_t{4} << 20;
@@ -212,7 +212,7 @@ class PartServer {
     if (work_.joinable()) work_.join();
   }
 
-  /// News, the end of a phase, and twice a second how things stand.
+  /// News, the end of a phase, and five times a second how things stand.
   Done tell() {
     std::deque<json> news;
     std::optional<execute::Outcome> outcome;

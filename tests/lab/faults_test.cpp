@@ -267,7 +267,7 @@ TEST_CASE("lab: a connection that stands still is told within a second and a hal
   kill(part, SIGCONT);
   INFO(run.output());
   CHECK(told);
-  CHECK(after < 1.5);
+  CHECK(after < 1.3);
   require_complete(lab, run, "hosts", hashes);
 }
 

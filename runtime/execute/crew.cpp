@@ -28,7 +28,7 @@ void guarded(Run& run, const std::function<void()>& body) noexcept {
 
 }  // namespace
 
-void Crew::start(Lane& lane, std::string name, std::function<void()> body) {
+std::thread::native_handle_type Crew::start(Lane& lane, std::string name, std::function<void()> body) {
   members_.reserve(members_.size() + 1);
   std::thread thread([run = run_, state = state_, &lane, body = std::move(body)] {
     guarded(*run, body);
@@ -37,6 +37,7 @@ void Crew::start(Lane& lane, std::string name, std::function<void()> body) {
     state->changed.notify_all();
   });
   members_.push_back({std::move(thread), &lane, std::move(name)});
+  return members_.back().thread.native_handle();
 }
 
 bool Crew::all_over(std::size_t first) const {

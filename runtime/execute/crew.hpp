@@ -16,8 +16,8 @@ class Crew {
  public:
   explicit Crew(std::shared_ptr<Run> run) : run_(std::move(run)), state_(std::make_shared<State>()) {}
 
-  /// Starts a thread that keeps the run alive. An exception of `body` ends the run.
-  void start(Lane& lane, std::string name, std::function<void()> body);
+  /// Starts a thread that keeps the run alive; its handle. An exception of `body` ends the run.
+  std::thread::native_handle_type start(Lane& lane, std::string name, std::function<void()> body);
 
   /// Waits until the threads from index `first` on are over, passing on the caller's wish to stop and ending the run when no call
   /// is completed for Options::watchdog_s. False: a thread hangs.

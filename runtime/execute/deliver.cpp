@@ -99,7 +99,13 @@ bool is_change(const Entry& entry) {
 bool await_answer(BlockRun& block, const Entry& barrier, Lane& lane) {
   Run& run = *block.run;
   Worker& worker = *run.workers[static_cast<std::size_t>(barrier.worker)];
-  if (!worker.done(barrier.job) && run.realtime()) run.overruns.fetch_add(1, std::memory_order_relaxed);
+  if (run.realtime() && !worker.done(barrier.job)) {
+    run.overruns.fetch_add(1, std::memory_order_relaxed);
+    if (run.phase->run.on_overrun == graph::Overrun::stop) {
+      run.control.fail(worker.block().index, "its answer came late, and on_overrun is 'stop'");
+      return false;
+    }
+  }
   if (!worker.wait(barrier.job, block.index, lane)) return false;
   block.inbox.collect();
   return true;

@@ -9,6 +9,7 @@
 #include "execute/crew.hpp"
 #include "execute/finish.hpp"
 #include "execute/progress.hpp"
+#include "execute/scheduling.hpp"
 #include "execute/seed.hpp"
 
 namespace bodeflow::execute {
@@ -49,8 +50,10 @@ bool run_threads(const std::shared_ptr<Run>& run, Crew& crew) {
     crew.start(worker->lane(), fmt::format("the thread of block '{}'", run->name(worker->block().index)),
                [w = worker.get()] { w->run(); });
   const std::size_t first = crew.size();
+  Scheduling scheduling(run->phase->run, run->options.warn);
   for (const auto& partition : run->partitions)
-    crew.start(partition->lane, fmt::format("thread {}", partition->index + 1), [p = partition.get()] { p->work(); });
+    scheduling.apply(
+        crew.start(partition->lane, fmt::format("thread {}", partition->index + 1), [p = partition.get()] { p->work(); }));
   if (!crew.watch(first)) return false;
   if (!run->control.stopping()) crew.start(run->finisher, "the last thread", [r = run.get()] { finish_run(*r); });
   return crew.watch();
@@ -76,11 +79,16 @@ Outcome outcome_of(const Run& run, bool hung, const std::string& hang) {
   Outcome outcome;
   outcome.wall_s = std::chrono::duration<double>(Clock::now() - run.started).count();
   outcome.overruns = run.overruns.load();
+  outcome.skipped = static_cast<std::uint64_t>(run.skipped.load());
   outcome.hung = hung;
   outcome.time_s = progress_of(run).time_s;
   outcome.metrics.resize(run.blocks.size());
-  if (!hung)  // a thread that was left behind may still count
+  if (!hung) {  // a thread that was left behind may still count
     for (std::size_t i = 0; i < run.blocks.size(); ++i) outcome.metrics[i] = metrics_of(run, *run.blocks[i]);
+    LatenessCounter lateness;
+    for (const auto& partition : run.partitions) lateness.add(partition->lateness);
+    outcome.lateness = lateness.summary();
+  }
   if (!run.control.stopping()) return outcome;
   const Control::End end = run.control.end();
   outcome.status = Outcome::Status::partial;
@@ -93,8 +101,6 @@ Outcome outcome_of(const Run& run, bool hung, const std::string& hang) {
 
 Outcome execute_all(const std::shared_ptr<Run>& run, const std::vector<std::unique_ptr<Instance>>& instances,
                     const std::vector<InitialRecord>& initial) {
-  if (run->options.clock == graph::Clock::hardware)
-    return refused("clock 'hardware': no block of this graph paces the run; allowed: simulated, realtime");
   if (auto compiled = compile(*run, instances, initial); !compiled) return refused(compiled.error());
   run->started = Clock::now();
   const std::size_t activated = activate(*run, instances);
@@ -102,6 +108,7 @@ Outcome execute_all(const std::shared_ptr<Run>& run, const std::vector<std::uniq
   std::vector<int> hanging;
   std::string hang;
   if (activated == instances.size()) {
+    const LockedMemory locked(run->phase->run, run->options.warn);
     run->started = Clock::now();
     const Reporter reporter(*run);
     Crew crew(run);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "execute/lateness.hpp"
 #include "plan/plan.hpp"
 
 namespace bodeflow::execute {
@@ -34,6 +35,7 @@ struct Progress {
 struct Options {
   std::uint64_t seed = 1;
   graph::Clock clock = graph::Clock::simulated;
+  std::function<void(const std::string&)> warn;  ///< told on the caller's thread what the system did not permit
   double watchdog_s = 10.0;
   std::uint32_t vector_level = 1;                 ///< bf_activation::vector_level
   std::uint64_t first_chunk = 0;                  ///< repetitions of a shorter first chunk (tests of bit-identity); 0: none
@@ -67,6 +69,8 @@ struct Outcome {
   double time_s = 0.0;       ///< of the run's clock that was done
   double wall_s = 0.0;
   std::uint64_t overruns = 0;  ///< real-time clock: chunks that began late, answers of asynchronous blocks that were waited for
+  std::uint64_t skipped = 0;   ///< chunks of time that were left out: Overrun::skip
+  Lateness lateness;           ///< realtime clock
   std::vector<BlockMetrics> metrics;
 };
 
@@ -79,6 +83,9 @@ struct Outcome {
 /// Ends: a delay does not lengthen a stream: a block makes floor(n / samples) firings for n samples that its producer made,
 /// whatever the delay; what is left over is dropped and counted, the initial samples of a delay are not. The records that
 /// take effect after a block's last firing are given to it before its finish(); changes are not.
+///
+/// Clocks: `realtime` begins each chunk at its absolute time of the steady clock. With `hardware` a device block holds the run
+/// back while it waits for its samples; the engine does not pace.
 ///
 /// Errors end the run as partial, with the block and its own words; the first one of several threads stands. Without any
 /// call completed for Options::watchdog_s (a finish: 60 times that) the run ends with a reason that names who waits for whom. A

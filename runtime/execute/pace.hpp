@@ -1,11 +1,11 @@
 #pragma once
 
-#include "execute/run.hpp"
+#include "execute/partition.hpp"
 
 namespace bodeflow::execute {
 
-/// Sleeps until `time_s` after the run's start on the steady clock; a time that is over already counts as an overrun. False: the
-/// run is stopping.
-bool wait_until(Run& run, Lane& lane, double time_s);
+/// Sleeps until the chunk's absolute time on the steady clock, counts how late it begins, and deals with an overrun as the run
+/// wishes. False: the run is stopping.
+bool wait_for_time(PartitionRun& partition, const Chunk& chunk);
 
 }  // namespace bodeflow::execute

@@ -30,10 +30,7 @@ void PartitionRun::work() {
   signal.raise();
 }
 
-bool PartitionRun::pace(const Chunk& chunk) {
-  if (!run->realtime() || chunk.index == 0) return true;
-  return wait_until(*run, lane, seconds(run->time_of_period(chunk.begin)));
-}
+bool PartitionRun::pace(const Chunk& chunk) { return !run->paced() || chunk.index == 0 || wait_for_time(*this, chunk); }
 
 /// Waits for room in the rings and moves the past of each buffer to its front.
 bool PartitionRun::begin(const Chunk& chunk) {

@@ -75,6 +75,7 @@ struct PartitionRun {
   std::int64_t full_periods = 0;  ///< no block here ends before these are over, as far as the facts say
   std::int64_t timing = 64;       ///< every so many chunks are measured
   Lane lane;
+  LatenessCounter lateness;
   Signal signal;                      ///< `done` or `periods_done` went on
   std::atomic<std::int64_t> done{0};  ///< ops done since the start; kNever: over
   std::atomic<std::int64_t> periods_done{0};

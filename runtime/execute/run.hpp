@@ -52,6 +52,7 @@ struct Run {
   Chunking chunking;
   std::atomic<bool> ends_changed{false};  ///< a source ended before its facts said so
   std::atomic<std::uint64_t> overruns{0};
+  std::atomic<std::int64_t> skipped{0};  ///< chunks of time left out of the schedule
   std::chrono::steady_clock::time_point started;
 
   Run();
@@ -59,7 +60,10 @@ struct Run {
 
   BlockRun& block(int index) { return *blocks[static_cast<std::size_t>(index)]; }
   const std::string& name(int index) const { return phase->blocks[static_cast<std::size_t>(index)].name; }
-  bool realtime() const { return options.clock == graph::Clock::realtime; }
+  /// Outside time passes while the run goes on.
+  bool realtime() const { return options.clock != graph::Clock::simulated; }
+  /// The engine holds the run back.
+  bool paced() const { return options.clock == graph::Clock::realtime; }
   /// When the last block with streams ends, as far as the ends are known; zero: not.
   Time end_time() const;
   /// The time when period `count` of the phase begins.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "graph/blocks.hpp"
 #include "graph/condition.hpp"
 #include "graph/connections.hpp"
@@ -16,6 +18,13 @@ namespace bodeflow::graph {
 namespace {
 
 constexpr std::int64_t kMostRepeats = 1'000'000;
+
+/// Whether outside hardware holds the block back: it is a device, and its samples come or go at the device's own rate.
+bool paces(const Block& block) {
+  const auto& roles = block.type->roles;
+  const bool streams = block.type->count(BF_STREAM, BF_IN) + block.type->count(BF_STREAM, BF_OUT) > 0;
+  return streams && std::find(roles.begin(), roles.end(), "device") != roles.end();
+}
 
 class Checker {
  public:
@@ -126,6 +135,18 @@ class Checker {
     if (connections == nullptr || !connections->broken) read_connections(connections, earlier, blocks, phase, report_);
     if (Node* node = owner.find("schedule")) read_schedule(*node, blocks, phase, report_);
     if (const Node* node = owner.find("record")) read_record(*node, blocks, phase, report_);
+    if (report_.empty()) check_clock(phase);
+  }
+
+  void check_clock(const Phase& phase) {
+    const std::string where = phase.name.empty() ? "" : fmt::format("phase {}: ", quote(phase.name));
+    if (phase.run.clock == Clock::hardware && std::none_of(phase.blocks.begin(), phase.blocks.end(), paces))
+      report_.add({phase.place, where +
+                                    "run: clock 'hardware': no block of this graph paces the run (a device with streams, such as "
+                                    "acquisition.alsa_capture); allowed: simulated, realtime"});
+    if (phase.run.clock == Clock::simulated && phase.run.priority)
+      report_.add({phase.place, where + "run: priority: a run as fast as possible would take the machine from everything else; "
+                                        "allowed with clock: realtime, hardware"});
   }
 
   Node& root_;

@@ -78,6 +78,10 @@ struct RecordedPort {
 
 enum class Clock { simulated, realtime, hardware };
 
+/// What a paced run does when a chunk's time is over before its thread comes to it: counts it and goes on without a pause until
+/// it has caught up; counts it and leaves out the whole chunks of time that were lost, so that it need not catch up; ends.
+enum class Overrun { count, skip, stop };
+
 struct RunSettings {
   Clock clock = Clock::simulated;
   std::optional<double> duration_s;
@@ -85,6 +89,9 @@ struct RunSettings {
   std::int64_t chunk = 1024;        ///< samples of the fastest stream in one call, at most
   std::optional<double> latency_s;  ///< budget: the chunk is not longer than this
   int threads = 1;
+  Overrun on_overrun = Overrun::count;
+  std::optional<int> priority;     ///< SCHED_FIFO of the compute threads, with locked memory; as any other program otherwise
+  std::vector<int> cores;          ///< compute threads are bound to these, in turn; empty: to none
   double watchdog_s = 10.0;        ///< a graph without progress for this long is ended and named
   double tolerance_s = 10.0;       ///< between hosts: a connection without progress for this long ends the run
   bool survives_launcher = false;  ///< hosts go on with a phase when the process that started the run is lost

@@ -18,14 +18,19 @@ const Names& phase_keys() {
 }
 
 const Names& run_keys() {
-  static const Names kKeys = {"clock",   "duration", "seed",      "chunk",        "latency",
-                              "threads", "watchdog", "tolerance", "launcher_lost"};
+  static const Names kKeys = {"clock",      "duration", "seed",  "chunk",    "latency",   "threads",
+                              "on_overrun", "priority", "cores", "watchdog", "tolerance", "launcher_lost"};
   return kKeys;
 }
 
 const Names& clocks() {
   static const Names kClocks = {"simulated", "realtime", "hardware"};
   return kClocks;
+}
+
+const Names& overruns() {
+  static const Names kOverruns = {"count", "skip", "stop"};
+  return kOverruns;
 }
 
 void check_keys(const Node& map, const std::string& where, const Names& allowed, Report& report) {

@@ -16,6 +16,7 @@ const Names& graph_keys();  ///< at the top of a file
 const Names& phase_keys();
 const Names& run_keys();
 const Names& clocks();
+const Names& overruns();
 
 /// Reports the keys of a map that are not allowed; `where` ("run: ", or "") begins the message.
 void check_keys(const Node& map, const std::string& where, const Names& allowed, Report& report);

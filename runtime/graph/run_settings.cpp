@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::int64_t kLongestChunk = 1 << 20;
 constexpr std::int64_t kMostThreads = 256;
+constexpr std::int64_t kHighestPriority = 99;  ///< of SCHED_FIFO
+constexpr std::int64_t kMostCores = 1024;      ///< of a cpu_set_t
 
 std::optional<double> read_time(const Node& node, const std::string& where, Report& report) {
   const auto seconds = read_number(node, where, "s", report);
@@ -24,6 +26,27 @@ std::optional<double> read_time(const Node& node, const std::string& where, Repo
 
 Clock clock_named(const std::string& name) {
   return name == "simulated" ? Clock::simulated : name == "realtime" ? Clock::realtime : Clock::hardware;
+}
+
+Overrun overrun_named(const std::string& name) {
+  return name == "count" ? Overrun::count : name == "skip" ? Overrun::skip : Overrun::stop;
+}
+
+std::vector<int> read_cores(const Node& node, Report& report) {
+  std::vector<int> cores;
+  if (!require_list(node, "run: cores", "a list of cores such as [2, 3]", report)) return cores;
+  for (const Node& item : node.items)
+    if (const auto core = read_integer(item, "run: cores", 0, kMostCores - 1, report)) cores.push_back(static_cast<int>(*core));
+  return cores;
+}
+
+void read_real_time(const Node& node, RunSettings& run, Report& report) {
+  if (const Node* n = node.find("on_overrun"))
+    if (const auto name = read_choice(*n, "run: on_overrun", overruns(), report)) run.on_overrun = overrun_named(*name);
+  if (const Node* n = node.find("priority"))
+    if (const auto priority = read_integer(*n, "run: priority", 1, kHighestPriority, report))
+      run.priority = static_cast<int>(*priority);
+  if (const Node* n = node.find("cores")) run.cores = read_cores(*n, report);
 }
 
 }  // namespace
@@ -54,6 +77,7 @@ void read_run(const Node& node, RunSettings& run, Report& report) {
     if (const auto t = read_time(*n, "run: latency", report)) run.latency_s = *t;
   if (const Node* n = node.find("threads"))
     if (const auto threads = read_integer(*n, "run: threads", 1, kMostThreads, report)) run.threads = static_cast<int>(*threads);
+  read_real_time(node, run, report);
   if (const Node* n = node.find("watchdog"))
     if (const auto t = read_time(*n, "run: watchdog", report)) run.watchdog_s = *t;
   if (const Node* n = node.find("tolerance"))

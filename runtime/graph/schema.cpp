@@ -180,6 +180,13 @@ Json run_definition() {
        {"chunk", described(integer(), "samples of the fastest stream in one call, at most")},
        {"latency", described(number(), "budget [s]: a chunk is not longer")},
        {"threads", described(integer(), "threads of the engine")},
+       {"on_overrun",
+        described(or_variable(Json::array({{{"enum", overruns()}}})),
+                  "clock realtime, a chunk that begins late; count: goes on at once until it has caught up; skip: leaves out the "
+                  "whole chunks of time that were lost, no samples; stop: the run ends")},
+       {"priority",
+        described(integer(), "1 to 99: SCHED_FIFO priority of the compute threads, with locked memory, where permitted")},
+       {"cores", described({{"type", "array"}, {"items", integer()}}, "compute threads are bound to these cores, in turn")},
        {"watchdog", described(number(), "a graph without progress for this long [s] is ended")},
        {"tolerance", described(number(), "a connection between hosts without progress for this long [s] ends the run")},
        {"launcher_lost", described(or_variable(Json::array({{{"enum", {"stop", "continue"}}}})),

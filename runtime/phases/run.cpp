@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "phases/condition.hpp"
 #include "phases/sweep.hpp"
+#include "record/pacing.hpp"
 
 namespace bodeflow::phases {
 namespace {
@@ -16,8 +19,12 @@ RunResult rejection(const graph::Phase& phase, Problems problems) {
   return {RunResult::Status::rejected, phase.name, "", to_string(problems), std::move(problems), false};
 }
 
+bool is_device(const BlockDescription& type) {
+  return std::find(type.roles.begin(), type.roles.end(), "device") != type.roles.end();
+}
+
 RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDirectory& directory, const RunOptions& options,
-                   int repeat) {
+                   const HostServices& services, int repeat) {
   auto initial = initial_records(phase, directory);
   if (!initial) return rejection(phase, initial.error());
   const auto sink = directory.begin_phase(phase, prepared.facts, plan::to_json(phase, prepared.facts, prepared.plan), repeat);
@@ -26,12 +33,14 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
   execute::Options execution;
   execution.seed = seed_of(phase, repeat);
   execution.clock = phase.run.clock;
+  execution.warn = [&](const std::string& text) { services.log("run", BF_LOG_WARNING, text); };
   execution.watchdog_s = phase.run.watchdog_s;
   execution.vector_level = options.vector_level;
   execution.stop = options.stop;
   if (options.progress) execution.progress = [&](const execute::Progress& progress) { options.progress(phase.name, progress); };
   const execute::Outcome outcome =
       execute::execute(phase, prepared.facts, prepared.plan, prepared.instances, *initial, **sink, execution);
+  if (const std::string kept = record::pacing_text(outcome); !kept.empty()) services.log("clock", BF_LOG_INFO, kept);
   const auto ended = directory.end_phase(outcome);
 
   RunResult result;
@@ -44,7 +53,11 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
     result.reason = outcome.reason;
   } else if (outcome.status != execute::Outcome::Status::complete) {
     result.status = RunResult::Status::failed;
-    if (outcome.failed_block >= 0) result.block = phase.blocks[static_cast<std::size_t>(outcome.failed_block)].name;
+    if (outcome.failed_block >= 0) {
+      const graph::Block& block = phase.blocks[static_cast<std::size_t>(outcome.failed_block)];
+      result.block = block.name;
+      if (is_device(*block.type)) result.status = RunResult::Status::device;
+    }
     result.reason = outcome.reason;
   } else if (!ended) {
     return failure(phase, ended.error());
@@ -130,7 +143,7 @@ RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registr
           if (!again) return rejection(phase, again.error());
           prepared[i] = std::move(*again);
         }
-        result = run_once(phase, std::move(prepared[i]), directory, options, repeat);
+        result = run_once(phase, std::move(prepared[i]), directory, options, *services.host(), repeat);
       }
       if (result.status != RunResult::Status::complete) return result;
       if (phase.until) {

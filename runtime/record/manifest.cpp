@@ -12,6 +12,7 @@
 #include "plugins/sha256.hpp"
 #include "record/files.hpp"
 #include "record/json_text.hpp"
+#include "record/pacing.hpp"
 #include "record/run_directory.hpp"
 
 namespace bodeflow::record {
@@ -103,6 +104,7 @@ void Manifest::add_phase(const graph::Phase& phase, int repeat, const execute::O
   if (outcome.failed_block >= 0) entry["failed_block"] = phase.blocks[static_cast<std::size_t>(outcome.failed_block)].name;
   entry["time_s"] = outcome.time_s;
   entry["wall_s"] = outcome.wall_s;
+  if (auto pacing = pacing_json(outcome); !pacing.is_null()) entry["pacing"] = std::move(pacing);
   ordered_json blocks = ordered_json::object();
   for (std::size_t b = 0; b < std::min(phase.blocks.size(), outcome.metrics.size()); ++b) {
     const auto& metrics = outcome.metrics[b];

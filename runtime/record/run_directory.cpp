@@ -11,6 +11,7 @@
 #include "record/json_text.hpp"
 #include "record/manifest.hpp"
 #include "record/output_files.hpp"
+#include "record/pacing.hpp"
 #include "record/recorder.hpp"
 #include "record/results.hpp"
 
@@ -136,6 +137,7 @@ struct RunDirectory::State {
     details["reason"] = outcome.reason;
     details["time_s"] = outcome.time_s;
     details["wall_s"] = outcome.wall_s;
+    if (auto pacing = pacing_json(outcome); !pacing.is_null()) details["pacing"] = std::move(pacing);
     if (!recorded) details["error"] = recorded.error();
     event("phase ends", std::move(details));
 

@@ -1,23 +1,16 @@
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "commands/command.hpp"
+#include "commands/real_time_findings.hpp"
 #include "commands/vector_level.hpp"
 #include "console/json_output.hpp"
 
 namespace bodeflow::tools {
 namespace {
-
-struct Finding {
-  std::string what;
-  std::string state;  ///< "good", "note" or "bad"
-  std::string found;
-  std::string advice;  ///< what to do, empty when good
-};
 
 Finding processor() {
   return {"processor", "good",
@@ -57,28 +50,10 @@ Finding graphviz() {
           found ? "" : "apt-get install graphviz, for 'bodeflow graph --format svg'"};
 }
 
-Finding realtime_priority() {
-  rlimit limit{};
-  getrlimit(RLIMIT_RTPRIO, &limit);
-  const bool permitted = geteuid() == 0 || limit.rlim_cur > 0;
-  return {"real-time priority", permitted ? "good" : "note", permitted ? "permitted" : "not permitted",
-          permitted ? "" : "for clock: realtime, add '@realtime - rtprio 80' to /etc/security/limits.d/realtime.conf"};
-}
-
-Finding locked_memory() {
-  rlimit limit{};
-  getrlimit(RLIMIT_MEMLOCK, &limit);
-  const bool unlimited = geteuid() == 0 || limit.rlim_cur == RLIM_INFINITY;
-  const std::string found = unlimited ? "unlimited" : fmt::format("{} KiB", limit.rlim_cur / 1024);
-  const bool enough = unlimited || limit.rlim_cur >= (64U << 20U);
-  return {"locked memory", enough ? "good" : "note", found,
-          enough ? "" : "for clock: realtime, add '@realtime - memlock unlimited' there too"};
-}
-
 int doctor(const Session& session, bool as_json) {
   const Registry registry = session.open_registry();
-  const std::vector<Finding> findings{processor(), plugins(registry),   runs_folder(),
-                                      graphviz(),  realtime_priority(), locked_memory()};
+  std::vector<Finding> findings{processor(), plugins(registry), runs_folder(), graphviz()};
+  for (auto& finding : real_time_findings()) findings.push_back(std::move(finding));
   bool bad = false;
   nlohmann::ordered_json all = nlohmann::json::array();
   for (const auto& finding : findings) {

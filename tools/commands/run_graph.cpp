@@ -50,6 +50,7 @@ int exit_code_of(phases::RunResult::Status status) {
     case phases::RunResult::Status::rejected:
       return kRejected;
     case phases::RunResult::Status::unreachable:
+    case phases::RunResult::Status::device:
       return kDevice;
     default:
       return kRunFailed;

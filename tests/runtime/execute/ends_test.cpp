@@ -158,15 +158,5 @@ TEST_CASE("ends: a real-time clock does not run ahead of the wall") {
   CHECK(result.outcome.wall_s >= 0.04);  // the last of five chunks begins there
 }
 
-TEST_CASE("ends: a hardware clock without a device is refused") {
-  Bench bench;
-  bench.add("count", "streams.counter");
-  bench.duration(0.05);
-  bench.options.clock = graph::Clock::hardware;
-  const Result result = bench.run();
-  CHECK(result.outcome.status == Outcome::Status::partial);
-  CHECK(result.outcome.reason == "clock 'hardware': no block of this graph paces the run; allowed: simulated, realtime");
-}
-
 }  // namespace
 }  // namespace bodeflow::test

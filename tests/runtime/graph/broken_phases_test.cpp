@@ -106,6 +106,43 @@ g.yaml:2:78: run: threads: found 1000, allowed: 1 to 256
 g.yaml:2:94: run: watchdog: 'off' is not a number
 g.yaml:2:99: run: unknown key 'speed' (did you mean 'seed'?))y"},
 
+{"run settings of real time",
+R"y(bodeflow: 1
+run: {clock: realtime, on_overrun: panic, priority: 100, cores: [0, -1, many]}
+blocks:
+  sine: {block: generators.sine}
+)y",
+R"y(g.yaml:2:36: run: on_overrun: found 'panic', allowed: count, skip, stop
+g.yaml:2:53: run: priority: found 100, allowed: 1 to 99
+g.yaml:2:69: run: cores: found -1, allowed: 0 to 1023
+g.yaml:2:73: run: cores: found 'many', allowed: a whole number)y"},
+
+{"cores that are no list",
+R"y(bodeflow: 1
+run: {cores: 2}
+blocks:
+  sine: {block: generators.sine}
+)y",
+R"y(g.yaml:2:14: run: cores: found '2', allowed: a list of cores such as [2, 3])y"},
+
+{"a hardware clock without hardware",
+R"y(bodeflow: 1
+run: {clock: hardware}
+blocks:
+  sine: {block: generators.sine}
+  book: {block: acquisition.log_book}
+)y",
+R"y(g.yaml:1:1: run: clock 'hardware': no block of this graph paces the run (a device with streams, such as acquisition.alsa_capture); allowed: simulated, realtime)y"},
+
+{"a priority in a run as fast as possible",
+R"y(bodeflow: 1
+phases:
+  - name: one
+    blocks: {sine: {block: generators.sine}}
+    run: {priority: 50}
+)y",
+R"y(g.yaml:3:5: phase 'one': run: priority: a run as fast as possible would take the machine from everything else; allowed with clock: realtime, hardware)y"},
+
 {"summary",
 R"y(bodeflow: 1
 phases:

@@ -45,6 +45,27 @@ TEST_CASE("graph: run settings have units and defaults") {
   CHECK(all.watchdog_s == 3.0);
 }
 
+TEST_CASE("graph: real-time settings have defaults and values") {
+  const RunSettings none = good("bodeflow: 1\nblocks: {a: {block: generators.sine}}\n").phases[0].run;
+  CHECK(none.on_overrun == Overrun::count);
+  CHECK_FALSE(none.priority);
+  CHECK(none.cores.empty());
+  const RunSettings all =
+      good(
+          "bodeflow: 1\nrun: {clock: realtime, on_overrun: skip, priority: 80, cores: [1, 0]}\nblocks: {a: {block: "
+          "generators.sine}}\n")
+          .phases[0]
+          .run;
+  CHECK(all.on_overrun == Overrun::skip);
+  CHECK(all.priority == 80);
+  CHECK(all.cores == std::vector<int>{1, 0});
+}
+
+TEST_CASE("graph: a device with streams may pace a run") {
+  const Graph graph = good("bodeflow: 1\nrun: {clock: hardware}\nblocks: {a: {block: acquisition.card}}\n");
+  CHECK(graph.phases[0].run.clock == Clock::hardware);
+}
+
 TEST_CASE("graph: a phase has the graph's run settings, and its own over them") {
   const Graph graph = phased("    run: {seed: 8, clock: realtime}\n");
   CHECK(graph.phases[0].run.seed == 7);

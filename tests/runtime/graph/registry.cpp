@@ -125,11 +125,25 @@ std::vector<BlockDescription> plants() {
                 {number("rs", "ohm", 6.6)})};
 }
 
+BlockDescription card() {
+  BlockDescription b = block("acquisition.card", {out(0, "out")}, {});
+  b.roles = {"source", "device"};
+  return b;
+}
+
+BlockDescription log_book() {
+  BlockDescription b = block("acquisition.log_book", {message_out(0, "entries", "trace")}, {});
+  b.roles = {"device"};
+  return b;
+}
+
 std::vector<BlockDescription> others() {
   ParameterDescription header = parameter("header", BF_BOOL);
   header.fallback.rows = 1;
   header.fallback.integer = 1;
-  return {block("acquisition.file", {out(0, "out")},
+  return {card(),
+          log_book(),
+          block("acquisition.file", {out(0, "out")},
                 {required(parameter("file", BF_FILE)), header, parameter("columns", BF_STRINGS), parameter("rows", BF_INTEGERS),
                  parameter("note", BF_STRING)}),
           block("spectrum.dft", {in(0, "input"), in(1, "output"), message_out(0, "response", "frequency_response")},

@@ -6,6 +6,7 @@
 
 #include "catch.hpp"
 #include "record/files.hpp"
+#include "record/pacing.hpp"
 #include "recording_fixture.hpp"
 
 using namespace bodeflow;
@@ -197,6 +198,36 @@ TEST_CASE("output files: a block's file in a later repetition has a number, anot
   CHECK(repeat(1) == "t/response@2.csv");
   CHECK(repeat(2) == "t/response@3.csv");
   CHECK(refused(*run, "other", "t/response.csv") == "output file 't/response.csv': block 'csv' writes it already");
+}
+
+TEST_CASE("how a phase kept time stands in the manifest and in the event of its end") {
+  const TemporaryFolder folder;
+  const auto phase = source_phase("hold");
+  const auto run = make_run(folder.path(), source_graph({phase}));
+  execute::LatenessCounter late;
+  for (const std::int64_t ns : {900, 1500, 40'000'000}) late.add(ns);
+  execute::Outcome outcome;
+  outcome.overruns = 1;
+  outcome.skipped = 3;
+  outcome.lateness = late.summary();
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    REQUIRE(run->begin_phase(phase, source_facts(), nlohmann::json::object(), repeat));
+    REQUIRE(run->end_phase(repeat == 0 ? outcome : execute::Outcome{}));
+  }
+  const auto phases = read_json(run->path() / "manifest.json")["phases"];
+  const auto& pacing = phases[0]["pacing"];
+  CHECK(pacing["overruns"] == 1);
+  CHECK(pacing["skipped"] == 3);
+  CHECK(pacing["chunks"] == 3);
+  CHECK(pacing["max_s"].get<double>() == Approx(0.04));
+  CHECK(pacing["bins"].size() == execute::Lateness::kBins);
+  CHECK(pacing["bins"][0] == 1);
+  CHECK_FALSE(phases[1].contains("pacing"));
+  for (const auto& event : read_events(run->path()))
+    if (event["event"] == "phase ends" && event["repeat"] == 0) CHECK(event["pacing"] == pacing);
+  CHECK(record::pacing_text(outcome) ==
+        "3 chunks began late by 1.53 us in the median, 39.9 ms at 99 %, 40 ms at most; 1 overrun, 3 chunks of time left out");
+  CHECK(record::pacing_text({}) == "");
 }
 
 TEST_CASE("changes of live parameters stand in the events with block, parameter, value and position") {

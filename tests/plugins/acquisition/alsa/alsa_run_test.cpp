@@ -227,7 +227,7 @@ TEST_CASE("an overrun of a capture is marked at its place with the samples that 
 TEST_CASE("an overrun ends a run that does not mark it: block, place, cause") {
   const Bench bench("overruns [ 6000 ]");
   const Ended ended = bench.run({bench.capture("on_gap: end")});
-  CHECK(ended.exit_code == 1);
+  CHECK(ended.exit_code == 5);
   CHECK_THAT(ended.err,
              Contains("block 'adc': overrun before sample ") && Contains("the samples were not taken in time; raise buffer"));
   CHECK(json::parse(bench.folder.read("out/result.json"))["status"] == "failed");
@@ -242,7 +242,7 @@ TEST_CASE("a device that breaks off at each start ends a run that marks gaps") {
 TEST_CASE("a device that stops delivering ends the run after its timeout") {
   const Bench bench("stall 5000");
   const Ended ended = bench.run({bench.capture("timeout: 200 ms")});
-  CHECK(ended.exit_code == 1);
+  CHECK(ended.exit_code == 5);
   CHECK_THAT(ended.err, Contains("block 'adc': sound device 'loop' (capture) delivered nothing for 0.2 s"));
 }
 
@@ -274,7 +274,7 @@ TEST_CASE("what a sound device can't do is refused with what it can") {
 TEST_CASE("a device is refused in simulated time") {
   const Bench bench("");
   const Ended ended = bench.run({bench.capture("format: s16", "0.1 s", "simulated")});
-  CHECK(ended.exit_code == 1);
+  CHECK(ended.exit_code == 5);
   CHECK_THAT(ended.err,
              Contains("block 'adc': a device goes by real time; run: {clock: simulated} does not. Allowed: realtime, hardware"));
 }

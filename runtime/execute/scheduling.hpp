@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "graph/graph.hpp"
+
+namespace bodeflow::execute {
+
+using Warn = std::function<void(const std::string&)>;
+
+/// The memory of the process, locked and in place while this lives: no page fault stops a compute thread.
+class LockedMemory {
+ public:
+  /// Locks nothing without RunSettings::priority. What the system does not permit is told to `warn`.
+  LockedMemory(const graph::RunSettings& run, const Warn& warn);
+  ~LockedMemory();
+  LockedMemory(const LockedMemory&) = delete;
+  LockedMemory& operator=(const LockedMemory&) = delete;
+
+ private:
+  bool locked_ = false;
+};
+
+/// Gives compute threads the priority and the cores of the run settings; says each of the two once where it is not permitted.
+class Scheduling {
+ public:
+  Scheduling(const graph::RunSettings& run, Warn warn) : run_(run), warn_(std::move(warn)) {}
+
+  /// The next compute thread.
+  void apply(std::thread::native_handle_type thread);
+
+ private:
+  void say(bool& warned, const std::string& text) const;
+
+  const graph::RunSettings& run_;
+  Warn warn_;
+  std::size_t next_ = 0;
+  bool warned_priority_ = false, warned_core_ = false;
+};
+
+}  // namespace bodeflow::execute

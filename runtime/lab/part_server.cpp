@@ -192,6 +192,7 @@ class PartServer {
     execute::Options options;
     options.seed = said.at("seed").get<std::uint64_t>();
     options.clock = phase_->run.clock;
+    options.warn = [this](const std::string& text) { services_.host()->log("run", BF_LOG_WARNING, text); };
     options.watchdog_s = phase_->run.watchdog_s;
     options.vector_level = options_.vector_level;
     options.stop = &stop_phase_;

@@ -134,11 +134,12 @@ tl::expected<Participant, std::string> join_lab(const Options& options, const st
   return transport::join(*settings);
 }
 
-int tell_agents(const Participant& participant, const std::string& list) {
+int tell_agents(const Participant& participant, const std::string& list, bool quiet) {
   std::ifstream in(list);
   const std::string pem{std::istreambuf_iterator<char>(in), {}};
   const auto told = lab::tell_revocations(participant, pem, 3.0);
   if (!told) return failed(told.error(), kDevice);
+  if (quiet) return kDone;
   for (const std::string& agent : *told) fmt::print("The agent of '{}' has been sent the new list and joins anew.\n", agent);
   if (told->empty()) fmt::print("No agent is in the lab now.\n");
   return kDone;
@@ -158,13 +159,11 @@ int revoke_host(const Options& options) {
   } else {
     fmt::print("Host '{}' is revoked.\n", host->name);
   }
-  if (*participant) return tell_agents(*participant, list);
+  if (*participant) return tell_agents(*participant, list, options.json);
   if (options.json) return kDone;
-  fmt::print(
-      "The other hosts refuse it from their next start with the new list on: copy {} into the folder of trust of each, and "
-      "restart\n"
-      "their agents; or let --tell-as HOST send it to all agents of the lab.\n",
-      list);
+  fmt::print("The other hosts refuse it from their next start with the new list on:\n");
+  fmt::print("copy {} into the folder of trust of each, and restart their agents;\n", list);
+  fmt::print("or let --tell-as HOST send it to all agents of the lab.\n");
   return kDone;
 }
 

@@ -37,7 +37,7 @@ TEST_CASE("schema: its keys are the loader's keys") {
   CHECK(s["properties"].size() == 13);
   CHECK(s["additionalProperties"] == false);
   CHECK(s["definitions"]["run"]["properties"].size() == 12);
-  CHECK(s["definitions"]["phases"]["items"]["properties"].size() == 12);
+  CHECK(s["definitions"]["phases"]["items"]["properties"].size() == 9);
 }
 
 TEST_CASE("schema: a parameter has its type, range, default, unit and live flag") {

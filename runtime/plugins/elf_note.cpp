@@ -124,10 +124,9 @@ tl::expected<ElfNote, std::string> read_elf_note(std::span<const std::byte> file
 }
 
 std::string abi_problem(std::uint32_t major, std::uint32_t minor) {
-  if (major == BF_ABI_MAJOR && (major == 0 ? minor == BF_ABI_MINOR : minor <= BF_ABI_MINOR)) return {};
-  std::string text = fmt::format("needs plugin ABI {}.{}, this host has {}.{}", major, minor, BF_ABI_MAJOR, BF_ABI_MINOR);
-  if (major == 0 && BF_ABI_MAJOR == 0) text += " (while the ABI is 0.x both must be the same: build the plugin anew)";
-  return text;
+  if (major == BF_ABI_MAJOR && minor <= BF_ABI_MINOR) return {};
+  return fmt::format("needs plugin ABI {}.{}, this host has {}.{}: {}", major, minor, BF_ABI_MAJOR, BF_ABI_MINOR,
+                     major < BF_ABI_MAJOR ? "build the plugin anew" : "update bodeflow");
 }
 
 }  // namespace bodeflow

@@ -12,7 +12,7 @@
   static_assert(sizeof(type) == (size) && std::is_standard_layout_v<type> && std::is_trivially_copyable_v<type>)
 #define AT(type, member, offset) static_assert(offsetof(type, member) == (offset))
 
-static_assert(BF_ABI_MAJOR == 0 && BF_ABI_MINOR == 3);
+static_assert(BF_ABI_MAJOR == 1 && BF_ABI_MINOR == 0);
 static_assert(BF_OK == 0 && BF_FAILED == 1);
 static_assert(BF_ANY == 0 && BF_F64 == 1 && BF_C64 == 2 && BF_I64 == 3 && BF_U8 == 4);
 static_assert(BF_BOOL == 1 && BF_INTEGER == 2 && BF_NUMBER == 3 && BF_STRING == 4 && BF_CHOICE == 5 && BF_FILE == 6);

@@ -1,10 +1,14 @@
-/* bodeflow plugin ABI 0.3.
+/* bodeflow plugin ABI 1.0.
  *
  * The border between the engine ("host") and a plugin. Plain C: no exception, C++ object or allocator crosses it.
  * Authors of plugins use <bodeflow/block.hpp>, a header-only C++ layer on this file.
  *
  * Rules that hold everywhere:
- *  - every struct that may grow begins with `struct_size`, set by whoever fills it; readers ignore what lies beyond;
+ *  - within major version 1 nothing here changes its place or meaning: a plugin that was built against 1.0 loads and gives the
+ *    same results in every 1.x;
+ *  - a struct that begins with `struct_size` may grow at its end; whoever fills it sets that size, readers ignore what lies
+ *    beyond and do without what is not there. A struct that stands in an array never grows: what belongs to its elements later
+ *    comes in an array of its own;
  *  - strings are UTF-8, NUL-terminated, and live as long as the object that they were read from;
  *  - functions that can fail return BF_OK or BF_FAILED; before BF_FAILED the plugin calls host->error with the reason;
  *  - [control] functions are called on one thread, never at the same time as any other function of the same block;
@@ -19,12 +23,12 @@
 extern "C" {
 #endif
 
-#define BF_ABI_MAJOR 0
-#define BF_ABI_MINOR 3
+#define BF_ABI_MAJOR 1
+#define BF_ABI_MINOR 0
 /* "BODEFLOW" read as a little-endian integer. */
 #define BF_PLUGIN_MAGIC UINT64_C(0x574F4C4645444F42)
 /* The one exported data symbol of a plugin, of type bf_plugin. */
-#define BF_PLUGIN_SYMBOL "bodeflow_plugin_v0"
+#define BF_PLUGIN_SYMBOL "bodeflow_plugin_v1"
 /* Name and type of the ELF note that the SDK writes; its descriptor is one bf_elf_note. */
 #define BF_NOTE_NAME "bodeflow"
 #define BF_NOTE_TYPE 1

@@ -128,8 +128,8 @@ constexpr bool fits_note(const char (&text)[N], std::size_t room) {
   static_assert(BF_PLUGIN_MAGIC == 0x574F4C4645444F42 && sizeof(bf_elf_note) == 144 && BF_NOTE_TYPE == 1, "the note's bytes"); \
   BODEFLOW_NOTE_(name, version);                                                                                               \
   extern "C" {                                                                                                                 \
-  extern __attribute__((visibility("default"))) const bf_plugin bodeflow_plugin_v0;                                            \
-  const bf_plugin bodeflow_plugin_v0 = {BF_PLUGIN_MAGIC,                                                                       \
+  extern __attribute__((visibility("default"))) const bf_plugin bodeflow_plugin_v1;                                            \
+  const bf_plugin bodeflow_plugin_v1 = {BF_PLUGIN_MAGIC,                                                                       \
                                         BF_ABI_MAJOR,                                                                          \
                                         BF_ABI_MINOR,                                                                          \
                                         sizeof(bf_plugin),                                                                     \

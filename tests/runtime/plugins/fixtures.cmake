@@ -32,7 +32,7 @@ foreach(way CRASH_IN_CONSTRUCTOR HANG_IN_CONSTRUCTOR EXIT_IN_CONSTRUCTOR NOISE U
   plugin_fixture(${name} broken.c ${way})
 endforeach()
 plugin_fixture(wrong_abi broken.c MAJOR=2 MINOR=0 CRASH_IN_CONSTRUCTOR)  # refused before it could crash
-plugin_fixture(newer_abi broken.c MAJOR=0 MINOR=4 CRASH_IN_CONSTRUCTOR)
+plugin_fixture(newer_abi broken.c MAJOR=1 MINOR=1 CRASH_IN_CONSTRUCTOR)
 plugin_fixture(two_minds_on_abi broken.c SYMBOL_MAJOR=3)
 plugin_fixture(duplicate broken.c ID="fixture.gain")
 # An undefined symbol in a module is an error at load time only where the linker lets it pass.

@@ -1,22 +1,19 @@
 #include "lab/agents.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <future>
 #include <map>
 #include <random>
 #include <thread>
 
-extern char** environ;
+#include "graph/node.hpp"
+#include "lab/part_process.hpp"
 
 namespace bodeflow::lab {
 namespace {
@@ -36,11 +33,7 @@ constexpr std::size_t kMostClocks = 8;
 std::string clock_topic(const std::string& name) { return "bodeflow/clock/" + name; }
 
 /// Names of runs and hosts go into topics and folder names.
-bool is_plain(const std::string& name) {
-  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
-  });
-}
+bool is_plain(const std::string& name) { return name.size() <= 64 && graph::is_name(name); }
 
 double load_now() {
   double load = 0.0;
@@ -96,33 +89,28 @@ class Agent {
 
   void take(const std::string& text) {
     const json wish = json::parse(text, nullptr, false);
-    if (wish.is_object() && wish.contains("clock") && wish["clock"].is_string() && is_plain(wish["clock"].get<std::string>()))
-      return tell_time(wish["clock"].get<std::string>());
-    if (wish.is_object() && wish.contains("revoked") && wish["revoked"].is_string()) {
-      renewed_ = task_.take_revocations && task_.take_revocations(wish["revoked"].get<std::string>());
-      if (renewed_) std::this_thread::sleep_for(kReceipt);  // the sender still waits for our receipt
-      return;
-    }
-    const std::string run =
-        wish.is_object() && wish.contains("start") && wish["start"].is_string() ? wish["start"].get<std::string>() : "";
-    if (!is_plain(run)) return task_.tell("a message that is no request was dropped");
+    const auto said = [&](const char* key) {
+      return wish.is_object() && wish.contains(key) && wish[key].is_string() ? wish[key].get<std::string>() : std::string();
+    };
+    if (const std::string clock = said("clock"); is_plain(clock)) return tell_time(clock);
+    if (const std::string list = said("revoked"); !list.empty()) return renew(list);
+    if (const std::string run = said("start"); is_plain(run)) return begin(run);
+    task_.tell("a message that is no request was dropped");
+  }
+
+  void renew(const std::string& revocations) {
+    renewed_ = task_.take_revocations && task_.take_revocations(revocations);
+    if (renewed_) std::this_thread::sleep_for(kReceipt);  // the sender still waits for our receipt
+  }
+
+  void begin(const std::string& run) {
     const fs::path directory = task_.directory / run;
     std::error_code error;
     fs::create_directories(task_.directory, error);
     if (error) return task_.tell(fmt::format("run '{}': can't create '{}': {}", run, task_.directory.string(), error.message()));
-    std::vector<std::string> command = task_.command;
-    for (std::string& word : part_options(run, task_.info.name, directory, task_.settings)) command.push_back(std::move(word));
-    std::vector<char*> arguments;
-    for (std::string& word : command) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    pid_t pid = 0;
-    const int failed = posix_spawn(&pid, arguments[0], &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failed != 0) return task_.tell(fmt::format("run '{}': can't start {}: {}", run, arguments[0], std::strerror(failed)));
-    children_[pid] = run;
+    const auto pid = start_part(task_.command, part_options(run, task_.info.name, directory, task_.settings));
+    if (!pid) return task_.tell(fmt::format("run '{}': {}", run, pid.error()));
+    children_[*pid] = run;
     ++served_;
     task_.tell(fmt::format("run '{}' begins", run));
   }
@@ -217,7 +205,7 @@ std::vector<AgentInfo> Lab::agents() const {
 }
 
 tl::expected<std::vector<AgentInfo>, std::string> Lab::wait_for(const std::vector<std::string>& names, double seconds,
-                                                                const std::atomic<bool>& stop) const {
+                                                                const transport::GoOn& go_on) const {
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (true) {
     const std::vector<AgentInfo> there = agents();
@@ -234,7 +222,7 @@ tl::expected<std::vector<AgentInfo>, std::string> Lab::wait_for(const std::vecto
         found.push_back(*agent);
     }
     if (missing.empty()) return found;
-    if (stop || std::chrono::steady_clock::now() > until)
+    if (!go_on() || std::chrono::steady_clock::now() > until)
       return tl::unexpected(fmt::format(
           "no agent of {} {} is there; {}: start 'bodeflow agent --name {}' there", missing.size() == 1 ? "host" : "hosts",
           fmt::join(missing, ", "),
@@ -242,6 +230,11 @@ tl::expected<std::vector<AgentInfo>, std::string> Lab::wait_for(const std::vecto
           missing.front()));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+}
+
+std::string new_name() {
+  std::random_device random;
+  return fmt::format("{:08x}{:08x}", random(), random());
 }
 
 tl::expected<bool, std::string> serve_agent(const AgentTask& task, const std::atomic<bool>& stop) {
@@ -275,8 +268,7 @@ tl::expected<void, std::string> ask_for_part(const std::shared_ptr<transport::Pa
 
 tl::expected<ClockOffset, std::string> clock_of(const std::shared_ptr<transport::Participant>& participant,
                                                 const std::string& agent, double seconds) {
-  std::random_device random;
-  const std::string name = fmt::format("{:08x}{:08x}", random(), random());
+  const std::string name = new_name();
   auto posted = transport::post(participant, mailbox_of(agent), json{{"clock", name}}.dump(), seconds);
   if (!posted) return tl::unexpected(posted.error().text);
   return ask_clock(participant, clock_topic(name), seconds);

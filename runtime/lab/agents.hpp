@@ -28,6 +28,9 @@ nlohmann::json to_json(const AgentInfo& agent);
 /// Nothing where the text is none of ours.
 std::optional<AgentInfo> agent_from(const std::string& text);
 
+/// A name that no other run or request has, on any machine.
+std::string new_name();
+
 /// Watches who is in the lab.
 class Lab {
  public:
@@ -36,7 +39,7 @@ class Lab {
   std::vector<AgentInfo> agents() const;
   /// Waits until all of `names` are there. Error: who is missing and who is there.
   tl::expected<std::vector<AgentInfo>, std::string> wait_for(const std::vector<std::string>& names, double seconds,
-                                                             const std::atomic<bool>& stop) const;
+                                                             const transport::GoOn& go_on) const;
 
  private:
   std::unique_ptr<transport::Board> board_;

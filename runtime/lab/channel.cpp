@@ -14,19 +14,13 @@ constexpr double kTolerance_s = 10.0;
 transport::Edge edge(const std::string& topic) {
   transport::Edge edge;
   edge.topic = topic;
-  edge.stream = stream_id(topic);
+  edge.stream = transport::stream_id(topic);
   edge.queue_bytes = kQueueBytes;
   edge.tolerance_s = kTolerance_s;
   return edge;
 }
 
 }  // namespace
-
-std::uint64_t stream_id(const std::string& name) {
-  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash == 0 ? 1 : hash;
-}
 
 transport::Edge edge_of(const std::string& run, const std::string& phase, int repeat, std::size_t cut, double tolerance_s,
                         std::uint64_t queue_bytes) {

@@ -36,9 +36,6 @@ class Channel {
   std::unique_ptr<transport::Inlet> inlet_;
 };
 
-/// The stream id of a name: the same on all hosts.
-std::uint64_t stream_id(const std::string& name);
-
 /// The edge of a cut: phase and repetition count on.
 transport::Edge edge_of(const std::string& run, const std::string& phase, int repeat, std::size_t cut, double tolerance_s,
                         std::uint64_t queue_bytes);

@@ -30,7 +30,7 @@ tl::expected<Ends, std::string> open(const std::shared_ptr<transport::Participan
   const auto edge = [&](const std::string& name) {
     transport::Edge made;
     made.topic = name;
-    made.stream = stream_id(name);
+    made.stream = transport::stream_id(name);
     return made;
   };
   auto outlet = transport::open_outlet(participant, edge(topic + (asks ? "/question" : "/answer")));

@@ -1,28 +1,17 @@
 #include "lab/own_part.hpp"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <cstring>
 #include <thread>
 
-extern char** environ;
+#include "lab/part_process.hpp"
 
 namespace bodeflow::lab {
 
-tl::expected<void, std::string> OwnPart::start(std::vector<std::string> command, const std::vector<std::string>& options) {
-  command.insert(command.end(), options.begin(), options.end());
-  std::vector<char*> arguments;
-  for (std::string& word : command) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const int failed = posix_spawn(&pid_, arguments[0], nullptr, nullptr, arguments.data(), environ);
-  if (failed == 0) return {};
-  pid_ = 0;
-  return tl::unexpected(std::string("can't start ") + arguments[0] + ": " + std::strerror(failed));
+tl::expected<void, std::string> OwnPart::start(const std::vector<std::string>& command, const std::vector<std::string>& options) {
+  return start_part(command, options).map([this](pid_t pid) { pid_ = pid; });
 }
 
 bool OwnPart::runs() {

@@ -17,7 +17,7 @@ class OwnPart {
   OwnPart& operator=(const OwnPart&) = delete;
 
   /// Error: why it could not be started.
-  tl::expected<void, std::string> start(std::vector<std::string> command, const std::vector<std::string>& options);
+  tl::expected<void, std::string> start(const std::vector<std::string>& command, const std::vector<std::string>& options);
   bool runs();
   /// Waits two seconds for its end, then ends it.
   void end();

@@ -12,6 +12,7 @@
 #include "lab/channel.hpp"
 #include "lab/facts_json.hpp"
 #include "lab/part_run.hpp"
+#include "phases/run.hpp"
 #include "transport/service.hpp"
 
 namespace bodeflow::lab {
@@ -59,7 +60,7 @@ class PartServer {
     heard_ = Clock::now();
     if (auto connected = channel_->connect([this] { return here(); }); !connected)
       return tl::unexpected("the launcher is not there: " + connected.error());
-    while (!over_) {
+    while (!dismissed_) {
       auto heard = channel_->hear(kPoll_s);
       if (!heard) return lost(heard.error());
       if (*heard) {
@@ -70,6 +71,8 @@ class PartServer {
       if (since_heard() > lost_s_) return lost(fmt::format("nothing was heard of the launcher for {} s", lost_s_));
     }
     channel_->drain(2.0);
+    std::error_code error;
+    if (fetched_) std::filesystem::remove_all(task_.directory, error);
     return {};
   }
 
@@ -108,16 +111,19 @@ class PartServer {
 
   json answer_to(const std::string& wish, const json& said) {
     if (wish == "begin") return begin(said);
+    if (wish == "bye") {
+      dismissed_ = true;
+      fetched_ = said.value("fetched", false);
+      return nullptr;
+    }
+    if (wish == "close") return close(said);
+    if (!directory_) return {{"error", fmt::format("host '{}' has no run to do '{}' for", task_.host, wish)}};
     if (wish == "phase") return make_phase(said);
+    if (!part_) return {{"error", fmt::format("host '{}' has no phase to do '{}' for", task_.host, wish)}};
     if (wish == "resolve") return resolve(said);
     if (wish == "prepare") return prepare(said);
     if (wish == "connect") return connect(said);
     if (wish == "run") return run(said);
-    if (wish == "close") return close(said);
-    if (wish == "bye") {
-      over_ = true;
-      return nullptr;
-    }
     return {{"error", fmt::format("host '{}' does not know what '{}' is", task_.host, wish)}};
   }
 
@@ -131,9 +137,9 @@ class PartServer {
     directory_ = std::move(*directory);
     services_.attach(*directory_);
     lost_s_ = said.at("tolerance_s").get<double>();
-    options_.vector_level = said.at("vector_level").get<std::uint32_t>();
-    plan_.chunk = said.at("chunk").get<std::int64_t>();
-    plan_.threads = said.at("threads").get<int>();
+    vector_level_ = said.at("vector_level").get<std::uint32_t>();
+    if (said.contains("chunk")) plan_.chunk = said["chunk"].get<std::int64_t>();
+    if (said.contains("threads")) plan_.threads = said["threads"].get<int>();
     return {{"ok", true}};
   }
 
@@ -149,20 +155,12 @@ class PartServer {
 
   json resolve(const json& said) {
     auto resolution = part_->resolve(said.at("block").get<std::string>(), stream_facts_from(said.at("inputs")));
-    if (!resolution) return {{"error", resolution.error()}};
+    if (!resolution) return {{"refused", resolution.error()}};
     return {{"resolution", to_json(*resolution)}};
   }
 
-  plan::PlanOptions plan_options() const {
-    plan::PlanOptions options;
-    options.chunk = plan_.chunk > 0 ? plan_.chunk : phase_->run.chunk;
-    options.threads = plan_.threads > 0 ? plan_.threads : phase_->run.threads;
-    options.latency_s = phase_->run.latency_s;
-    return options;
-  }
-
   json prepare(const json& said) {
-    auto prepared = part_->prepare(facts_from(said.at("facts")), plan_options(), services_);
+    auto prepared = part_->prepare(facts_from(said.at("facts")), phases::plan_options(*phase_, plan_), services_);
     if (!prepared) return problems_answer(prepared.error());
     return {{"ok", true}};
   }
@@ -189,12 +187,9 @@ class PartServer {
       initial.push_back({{to.at(0).get<int>(), to.at(1).get<int>()}, initial_.at(index)});
     }
     initial_.clear();
-    execute::Options options;
+    execute::Options options = phases::execution_of(*phase_, *services_.host());
     options.seed = said.at("seed").get<std::uint64_t>();
-    options.clock = phase_->run.clock;
-    options.warn = [this](const std::string& text) { services_.host()->log("run", BF_LOG_WARNING, text); };
-    options.watchdog_s = phase_->run.watchdog_s;
-    options.vector_level = options_.vector_level;
+    options.vector_level = vector_level_;
     options.stop = &stop_phase_;
     options.progress = [this](const execute::Progress& now) {
       const std::lock_guard lock(mutex_);
@@ -268,6 +263,7 @@ class PartServer {
 
   /// Closes the run directory and sends its files. All hosts have ended their phases: nobody reads from our links any more.
   json close(const json& said) {
+    if (!directory_) return {{"files", json::array()}};
     part_.reset();
     const auto closed = directory_->close(said.at("status").get<std::string>(), said.at("reason").get<std::string>());
     json files = json::array();
@@ -316,13 +312,11 @@ class PartServer {
   std::unique_ptr<Channel> channel_;
   Clock::time_point heard_, told_;
   double lost_s_ = kLost_s;
-  bool over_ = false, running_ = false, hung_ = false;
+  bool dismissed_ = false, running_ = false, hung_ = false;
+  bool fetched_ = false;  ///< the launcher has all files of the run
 
-  struct {
-    std::int64_t chunk = 0;
-    int threads = 0;
-  } plan_;
-  execute::Options options_;
+  phases::PlanSettings plan_;
+  std::uint32_t vector_level_ = 1;
   std::optional<graph::Graph> graph_;
   std::unique_ptr<record::RunDirectory> directory_;
   const graph::Phase* phase_ = nullptr;

@@ -39,6 +39,16 @@ tl::expected<std::vector<Advice>, Problems> advice_of(const graph::Phase& phase,
 
 }  // namespace
 
+plan::PlanOptions plan_options(const graph::Phase& phase, const PlanSettings& settings) {
+  plan::PlanOptions options;
+  options.chunk = settings.chunk.value_or(phase.run.chunk);
+  options.threads = settings.threads.value_or(phase.run.threads);
+  options.latency_s = phase.run.latency_s;
+  for (const auto& recorded : phase.recorded)
+    if (recorded.kind == BF_STREAM) options.kept.push_back(recorded.port);
+  return options;
+}
+
 tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& registry,
                                          std::shared_ptr<const HostServices> services, const PlanSettings& settings) {
   auto instances = plan::instantiate(phase, registry, std::move(services));
@@ -46,13 +56,7 @@ tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& re
   auto facts = plan::establish_facts(phase, *instances);
   if (!facts) return tl::unexpected(facts.error());
 
-  plan::PlanOptions options;
-  options.chunk = settings.chunk.value_or(phase.run.chunk);
-  options.threads = settings.threads.value_or(phase.run.threads);
-  options.latency_s = phase.run.latency_s;
-  for (const auto& recorded : phase.recorded)
-    if (recorded.kind == BF_STREAM) options.kept.push_back(recorded.port);
-  auto plan = plan::make_plan(phase, *facts, options);
+  auto plan = plan::make_plan(phase, *facts, plan_options(phase, settings));
   if (!plan) return tl::unexpected(plan.error());
   const std::uint64_t memory = physical_memory();
   if (plan->bytes > memory)

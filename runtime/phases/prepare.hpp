@@ -28,6 +28,9 @@ struct PlanSettings {
   std::optional<std::int64_t> chunk;
 };
 
+/// How a phase is planned: its own words, and those of the command line over them.
+plan::PlanOptions plan_options(const graph::Phase& phase, const PlanSettings& settings);
+
 /// The prepared phase: blocks made, facts established, plan made. Errors are those of these three steps, the first that has any.
 tl::expected<Prepared, Problems> prepare(const graph::Phase& phase, Registry& registry,
                                          std::shared_ptr<const HostServices> services, const PlanSettings& settings);

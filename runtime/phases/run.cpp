@@ -15,10 +15,6 @@ RunResult failure(const graph::Phase& phase, std::string reason) {
   return {RunResult::Status::failed, phase.name, "", std::move(reason), {}, false};
 }
 
-RunResult rejection(const graph::Phase& phase, Problems problems) {
-  return {RunResult::Status::rejected, phase.name, "", to_string(problems), std::move(problems), false};
-}
-
 bool is_device(const BlockDescription& type) {
   return std::find(type.roles.begin(), type.roles.end(), "device") != type.roles.end();
 }
@@ -30,11 +26,8 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
   const auto sink = directory.begin_phase(phase, prepared.facts, plan::to_json(phase, prepared.facts, prepared.plan), repeat);
   if (!sink) return failure(phase, sink.error());
 
-  execute::Options execution;
+  execute::Options execution = execution_of(phase, services);
   execution.seed = seed_of(phase, repeat);
-  execution.clock = phase.run.clock;
-  execution.warn = [&](const std::string& text) { services.log("run", BF_LOG_WARNING, text); };
-  execution.watchdog_s = phase.run.watchdog_s;
   execution.vector_level = options.vector_level;
   execution.stop = options.stop;
   if (options.progress) execution.progress = [&](const execute::Progress& progress) { options.progress(phase.name, progress); };
@@ -73,12 +66,24 @@ tl::expected<bool, Problem> allowed(const std::optional<graph::Condition>& condi
 
 }  // namespace
 
+execute::Options execution_of(const graph::Phase& phase, const HostServices& services) {
+  execute::Options options;
+  options.clock = phase.run.clock;
+  options.warn = [&services](const std::string& text) { services.log("run", BF_LOG_WARNING, text); };
+  options.watchdog_s = phase.run.watchdog_s;
+  return options;
+}
+
 std::uint64_t seed_of(const graph::Phase& phase, int repeat) {
   std::uint64_t hash = phase.run.seed;
   if (phase.name.empty() && repeat == 0) return hash;
   for (const char c : fmt::format("{}@{}", phase.name, repeat))
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;  // FNV-1a
   return hash;
+}
+
+RunResult rejection(const graph::Phase& phase, Problems problems) {
+  return {RunResult::Status::rejected, phase.name, "", to_string(problems), std::move(problems), false};
 }
 
 const char* status_word(RunResult::Status status) {
@@ -123,8 +128,8 @@ tl::expected<std::vector<Prepared>, Problems> prepare_all(const graph::Graph& gr
   return all;
 }
 
-RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registry& registry, record::RunDirectory& directory,
-              const Services& services, const RunOptions& options) {
+RunResult run_in_order(const graph::Graph& graph, record::RunDirectory& directory, const RunPhase& run_phase,
+                       const std::function<void(const graph::Phase&, const std::string&)>& warn) {
   for (std::size_t i = 0; i < graph.phases.size(); ++i) {
     const graph::Phase& phase = graph.phases[i];
     const auto wanted = allowed(phase.when, directory);
@@ -134,29 +139,33 @@ RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registr
       continue;
     }
     for (int repeat = 0; repeat < phase.repeat_max; ++repeat) {
-      RunResult result;
-      if (!phase.sweep.empty()) {
-        result = run_sweep(graph, phase, directory, options);
-      } else {
-        if (repeat > 0) {
-          auto again = prepare(phase, registry, services.host(), options.plan);
-          if (!again) return rejection(phase, again.error());
-          prepared[i] = std::move(*again);
-        }
-        result = run_once(phase, std::move(prepared[i]), directory, options, *services.host(), repeat);
-      }
+      RunResult result = run_phase(i, repeat);
       if (result.status != RunResult::Status::complete) return result;
-      if (phase.until) {
-        const auto enough = allowed(phase.until, directory);
-        if (!enough) return rejection(phase, {enough.error()});
-        if (*enough) break;
-        if (repeat + 1 == phase.repeat_max)
-          services.host()->log("phase " + phase.name, BF_LOG_WARNING,
-                               fmt::format("'until' was not met in {} repetitions", phase.repeat_max));
-      }
+      if (!phase.until) continue;
+      const auto enough = allowed(phase.until, directory);
+      if (!enough) return rejection(phase, {enough.error()});
+      if (*enough) break;
+      if (repeat + 1 == phase.repeat_max) warn(phase, fmt::format("'until' was not met in {} repetitions", phase.repeat_max));
     }
   }
   return {};
+}
+
+RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registry& registry, record::RunDirectory& directory,
+              const Services& services, const RunOptions& options) {
+  const auto run_phase = [&](std::size_t index, int repeat) -> RunResult {
+    const graph::Phase& phase = graph.phases[index];
+    if (!phase.sweep.empty()) return run_sweep(graph, phase, directory, options);
+    if (repeat > 0) {
+      auto again = prepare(phase, registry, services.host(), options.plan);
+      if (!again) return rejection(phase, again.error());
+      prepared[index] = std::move(*again);
+    }
+    return run_once(phase, std::move(prepared[index]), directory, options, *services.host(), repeat);
+  };
+  return run_in_order(graph, directory, run_phase, [&](const graph::Phase& phase, const std::string& text) {
+    services.host()->log("phase " + phase.name, BF_LOG_WARNING, text);
+  });
 }
 
 }  // namespace bodeflow::phases

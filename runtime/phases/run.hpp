@@ -29,11 +29,17 @@ struct RunResult {
   bool hung = false;  ///< a thread of a block could not be stopped: end the process without clean-up
 };
 
+/// A phase that was refused because of `problems`.
+RunResult rejection(const graph::Phase& phase, Problems problems);
+
 /// What the manifest says of a run that ended so.
 const char* status_word(RunResult::Status status);
 
 /// The seed of a phase's repetition: each has random numbers of its own. The only phase of a graph keeps the run's seed.
 std::uint64_t seed_of(const graph::Phase& phase, int repeat);
+
+/// What a phase says of how it is executed; what the system does not permit goes to `services`, which outlive the run.
+execute::Options execution_of(const graph::Phase& phase, const HostServices& services);
 
 /// The records of earlier phases that a phase refers to. Error: which was never sent, with its place.
 tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(const graph::Phase& phase,
@@ -42,6 +48,14 @@ tl::expected<std::vector<execute::InitialRecord>, Problems> initial_records(cons
 /// Prepares every phase once, so that all problems are known before anything runs.
 tl::expected<std::vector<Prepared>, Problems> prepare_all(const graph::Graph& graph, Registry& registry, const Services& services,
                                                           const PlanSettings& settings);
+
+/// Runs one repetition of the phase of that index.
+using RunPhase = std::function<RunResult(std::size_t phase, int repeat)>;
+
+/// Runs the phases of a graph in order, each as its conditions want it and as often; the first that is not complete ends it.
+/// `warn` is told where `until` was not met.
+RunResult run_in_order(const graph::Graph& graph, record::RunDirectory& directory, const RunPhase& run_phase,
+                       const std::function<void(const graph::Phase&, const std::string&)>& warn);
 
 /// Runs the phases in order, with conditions, repeats and sweeps, into the directory. `prepared` is used up.
 RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registry& registry, record::RunDirectory& directory,

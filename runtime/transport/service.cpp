@@ -60,12 +60,6 @@ struct TopicReader {
   bf_part part{};
 };
 
-std::uint64_t stream_of(const std::string& topic) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : topic) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;  // FNV-1a
-  return hash;
-}
-
 tl::expected<Edge, std::string> edge_of(const bf_topic* topic) {
   const auto wrong = [](std::string text) { return tl::unexpected<std::string>(std::move(text)); };
   if (topic == nullptr || topic->name == nullptr || *topic->name == '\0') return wrong("a topic without a name");
@@ -120,7 +114,7 @@ struct ServiceFunctions {
   static void* open_writer(const bf_transport* transport, const bf_host* host, const bf_topic* topic) noexcept {
     return opened(transport, host, topic,
                   [](Service& service, const auto& participant, Edge edge) -> tl::expected<void*, std::string> {
-                    edge.stream = stream_of(edge.topic);
+                    edge.stream = stream_id(edge.topic);
                     edge.epoch = static_cast<std::uint32_t>(std::time(nullptr));  // a writer that comes later is higher
                     auto outlet = open_outlet(participant, edge);
                     if (!outlet) return tl::unexpected(outlet.error().text);

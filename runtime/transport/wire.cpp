@@ -123,4 +123,10 @@ tl::expected<Decoded, std::string> decode(std::span<const std::byte> bytes) {
   return decoded;
 }
 
+std::uint64_t stream_id(const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return hash == 0 ? 1 : hash;
+}
+
 }  // namespace bodeflow::transport

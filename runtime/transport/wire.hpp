@@ -36,6 +36,9 @@ struct Header {
   std::string clock;           ///< clock domain; "" is the run's own
 };
 
+/// A stream id made of a name; never 0.
+std::uint64_t stream_id(const std::string& name);
+
 /// The most that one message may carry.
 inline constexpr std::uint64_t kMostPayload = std::uint64_t{64} << 20;
 

@@ -53,13 +53,17 @@ nlohmann::json TestLab::hashes(const std::string& out) const {
   return nlohmann::json::parse(folder_.read(out + "/manifest.json"))["hashes"];
 }
 
+std::vector<std::string> TestLab::runs_of(const std::string& agent) const {
+  std::vector<std::string> runs;
+  std::error_code error;
+  for (const auto& run : std::filesystem::directory_iterator(path("agent_" + agent), error)) runs.push_back(run.path().string());
+  return runs;
+}
+
 bool TestLab::has_graph(const std::string& agent) const {
-  namespace fs = std::filesystem;
-  for (int i = 0; i < 200; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
-    std::error_code error;
-    for (const auto& run : fs::directory_iterator(path("agent_" + agent), error))
-      if (fs::exists(run.path() / "graph.yaml", error)) return true;
-  }
+  for (int i = 0; i < 200; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(50)))
+    for (const std::string& run : runs_of(agent))
+      if (std::filesystem::exists(run + "/graph.yaml")) return true;
   return false;
 }
 

@@ -27,6 +27,8 @@ class TestLab {
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   /// Hashes of all streams and records that a run kept.
   nlohmann::json hashes(const std::string& out) const;
+  /// Folders of runs that an agent holds.
+  std::vector<std::string> runs_of(const std::string& agent) const;
   /// Waits until an agent's part of a run knows its graph; false: not within ten seconds.
   bool has_graph(const std::string& agent) const;
   /// Ends the process of an agent, and with it all that it runs, as a crash does.

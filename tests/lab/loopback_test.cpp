@@ -36,6 +36,9 @@ void require_same(TestLab& lab, const std::string& graph) {
     return nlohmann::json::parse(lab.folder().read(out + "/result.json"))["results"];
   };
   CHECK(results("hosts") == results("here"));
+  INFO("what the parts kept while they ran is gone once it was fetched");
+  CHECK_FALSE(std::filesystem::exists(lab.path("hosts/own_part")));
+  CHECK(lab.runs_of("bench").empty());
 }
 
 }  // namespace

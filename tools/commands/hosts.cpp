@@ -65,16 +65,8 @@ nlohmann::ordered_json to_json(const std::vector<Host>& hosts) {
 }
 
 int hosts(const Session& session, const HostsCommand& command) {
-  const auto settings = command.lab.settings("");
-  if (!settings) {
-    say_error(settings.error());
-    return kUsage;
-  }
-  const auto participant = transport::join(*settings);
-  if (!participant) {
-    say_error(participant.error());
-    return kDevice;
-  }
+  const auto participant = command.lab.join();
+  if (!participant) return participant.error();
   const auto lab = lab::Lab::watch(*participant);
   if (!lab) {
     say_error(lab.error());

@@ -96,6 +96,18 @@ tl::expected<transport::Settings, std::string> LabOptions::settings(const std::s
       folder.empty() ? "" : " in '" + folder.string() + "'"));
 }
 
+tl::expected<std::shared_ptr<transport::Participant>, ExitCode> LabOptions::join() const {
+  const auto made = settings("");
+  if (!made) {
+    say_error(made.error());
+    return tl::unexpected(kUsage);
+  }
+  auto participant = transport::join(*made);
+  if (participant) return std::move(*participant);
+  say_error(participant.error());
+  return tl::unexpected(kDevice);
+}
+
 lab::AgentInfo this_machine(const Session&, const Registry& registry, const std::string& name) {
   lab::AgentInfo info;
   info.name = name;

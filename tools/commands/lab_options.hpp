@@ -24,6 +24,8 @@ struct LabOptions {
   /// `host`: whose certificate this process uses; empty: the only one in the folder of trust. Error: also where the network would
   /// be open to strangers without the words that allow it.
   tl::expected<transport::Settings, std::string> settings(const std::string& host) const;
+  /// Joins the lab to look around. Error: the exit code, why not was said.
+  tl::expected<std::shared_ptr<transport::Participant>, ExitCode> join() const;
 };
 
 /// What `bodeflow agent` is told.

@@ -104,16 +104,8 @@ std::vector<json> look(transport::Board& board) {
 }
 
 int top(const TopCommand& command) {
-  const auto settings = command.lab.settings("");
-  if (!settings) {
-    say_error(settings.error());
-    return kUsage;
-  }
-  const auto participant = transport::join(*settings);
-  if (!participant) {
-    say_error(participant.error());
-    return kDevice;
-  }
+  const auto participant = command.lab.join();
+  if (!participant) return participant.error();
   auto board = transport::open_board(*participant, lab::kRunsBoard, false);
   if (!board) {
     say_error(board.error().text);

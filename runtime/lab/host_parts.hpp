@@ -1,0 +1,75 @@
+#pragma once
+
+#include <set>
+
+#include "lab/host_part.hpp"
+#include "lab/launch.hpp"
+#include "lab/own_part.hpp"
+
+namespace bodeflow::lab {
+
+/// What ends a run before its end.
+struct Ended {
+  phases::RunResult::Status status = phases::RunResult::Status::failed;
+  std::string block, reason;
+  Problems problems;
+};
+
+/// The parts of a run, one process on each of its hosts: found, started, asked together, and dismissed.
+class HostParts {
+ public:
+  HostParts(const graph::Graph& graph, const Registry& registry, record::RunDirectory& directory, const LaunchOptions& options);
+
+  /// Waits for the agents, starts the parts and gives them the graph. Error: who is not there or does not fit; nothing was
+  /// started where one does not fit.
+  tl::expected<void, std::string> begin();
+
+  /// The name that the run has in the lab.
+  const std::string& run() const { return run_; }
+  const std::shared_ptr<transport::Participant>& participant() const { return participant_; }
+  /// The user wants the run to end.
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  const std::vector<std::unique_ptr<HostPart>>& all() const { return parts_; }
+  HostPart& on(const std::string& host) const;
+  /// Lost, or dismissed: it is told nothing any more.
+  bool is_gone(const HostPart& part) const { return gone_.count(&part) > 0; }
+  void lose(const HostPart& part) { gone_.insert(&part); }
+
+  /// The answer of a host. Error: it is lost, or what it refuses.
+  tl::expected<nlohmann::json, Ended> ask(HostPart& part, const nlohmann::json& question);
+  /// Asks all hosts, then waits for all answers.
+  tl::expected<void, Ended> ask_all(const nlohmann::json& question);
+  tl::expected<void, std::string> tell_all(const nlohmann::json& message);
+  /// Says twice a second that the launcher is there.
+  tl::expected<void, std::string> beat();
+
+  /// Brings the hosts' files into the run directory and lets every host go; a complete run of which something can't be had has
+  /// failed.
+  void finish(phases::RunResult& result);
+
+ private:
+  tl::expected<void, std::string> check(const AgentInfo& agent) const;
+  tl::expected<void, std::string> start(const std::string& host);
+  tl::expected<void, std::string> connect(HostPart& part);
+  tl::expected<void, std::string> greet();
+  tl::expected<nlohmann::json, Ended> wait_for_answer(HostPart& part);
+  tl::expected<void, std::string> collect(HostPart& part, const phases::RunResult& result);
+
+  const graph::Graph& graph_;
+  const Registry& registry_;
+  record::RunDirectory& directory_;
+  const LaunchOptions& options_;
+  const std::string run_ = new_name();
+  double tolerance_s_ = 0.0;  ///< the longest silence of a host that any phase bears
+  std::shared_ptr<transport::Participant> participant_;
+  OwnPart own_;
+  std::vector<std::unique_ptr<HostPart>> parts_;
+  std::set<const HostPart*> gone_;
+  std::chrono::steady_clock::time_point beaten_;
+};
+
+/// The hosts of a graph, sorted; this machine is "".
+std::vector<std::string> hosts_of(const graph::Graph& graph);
+
+}  // namespace bodeflow::lab

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bodeflow/record_layout.hpp>
 #include <cstring>
+#include <thread>
 
 namespace bodeflow::record {
 namespace {
@@ -26,50 +27,62 @@ void interleave(const void* const* channels, std::size_t channel_count, std::uin
 
 }  // namespace
 
-StreamQueue::StreamQueue(Origin origin, const StreamFacts& facts, std::size_t limit)
+StreamQueue::StreamQueue(Origin origin, const StreamFacts& facts, std::size_t limit, bool polled)
     : origin_(std::move(origin)),
       channels_(std::max(1U, facts.channels)),
       element_bytes_(static_cast<std::size_t>(element_size(facts.element))),
       row_bytes_(element_bytes_ * channels_),
-      limit_(std::max(limit, row_bytes_)),
-      worth_(std::min(kWorth, limit_ / 2)),
-      filling_(new std::byte[limit_]),
-      writing_(new std::byte[limit_]) {}
+      capacity_(std::max<std::uint64_t>(2, limit / row_bytes_)),
+      worth_(std::max<std::uint64_t>(1, std::min<std::uint64_t>(kWorth / row_bytes_, capacity_ / 4))),
+      polled_(polled),
+      ring_(new std::byte[capacity_ * row_bytes_]) {}
 
 std::pair<std::uint64_t, bool> StreamQueue::put_some(const void* const* channels, std::uint64_t first, std::uint64_t count,
                                                      const std::atomic<bool>& refusing) {
+  copying_ = true;  // before a look at `refusing`: `close` looks in the other order
+  std::uint64_t fits = 0;
+  const std::uint64_t before = waiting_rows();
+  if (refusing) {
+    fits = count;
+  } else {
+    const std::uint64_t at = put_ % capacity_;
+    fits = std::min({count, capacity_ - before, capacity_ - at});
+    std::byte* to = ring_.get() + at * row_bytes_;
+    if (element_bytes_ == sizeof(double))
+      interleave<double>(channels, channels_, first, fits, to);
+    else
+      interleave<std::complex<double>>(channels, channels_, first, fits, to);
+    put_ += fits;
+  }
+  copying_ = false;
+  return {fits, fits == 0 || (!polled_ && before < worth_ && before + fits >= worth_)};
+}
+
+void StreamQueue::wait_for_room(const std::atomic<bool>& refusing) {
   std::unique_lock lock(mutex_);
-  space_.wait(lock, [&] { return filled_ + row_bytes_ <= limit_ || refusing; });
-  if (refusing) return {count, false};
-  const std::uint64_t fits = std::min<std::uint64_t>(count, (limit_ - filled_) / row_bytes_);
-  if (element_bytes_ == sizeof(double))
-    interleave<double>(channels, channels_, first, fits, filling_.get() + filled_);
-  else
-    interleave<std::complex<double>>(channels, channels_, first, fits, filling_.get() + filled_);
-  const bool before = filled_ >= worth_;
-  filled_ += fits * row_bytes_;
-  return {fits, !before && filled_ >= worth_};
+  stuck_ = true;
+  room_.wait(lock, [&] { return waiting_rows() < capacity_ || refusing; });
+  stuck_ = false;
 }
 
 std::span<const std::byte> StreamQueue::take(bool all) {
-  const std::lock_guard lock(mutex_);
-  if (filled_ == 0 || (!all && filled_ < worth_)) return {};
-  std::swap(filling_, writing_);
-  const std::size_t size = std::exchange(filled_, 0);
-  space_.notify_all();
-  return {writing_.get(), size};
+  taken_ += std::exchange(lent_, 0);
+  if (stuck_) wake();
+  const std::uint64_t waiting = waiting_rows();
+  if (waiting == 0 || (!all && waiting < worth_)) return {};
+  const std::uint64_t at = taken_ % capacity_;
+  lent_ = std::min(waiting, capacity_ - at);
+  return {ring_.get() + at * row_bytes_, lent_ * row_bytes_};
 }
 
 void StreamQueue::wake() {
   const std::lock_guard lock(mutex_);
-  space_.notify_all();
+  room_.notify_all();
 }
 
 void StreamQueue::close() {
-  const std::lock_guard lock(mutex_);
-  filling_.reset();
-  writing_.reset();
-  filled_ = 0;
+  while (copying_) std::this_thread::yield();
+  ring_.reset();
 }
 
 bool RecordQueue::put(const SharedRecord& record, double time_s, const std::atomic<bool>& refusing) {

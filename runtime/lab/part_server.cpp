@@ -70,9 +70,9 @@ class PartServer {
       if (auto told = tell(); !told) return lost(told.error());
       if (since_heard() > lost_s_) return lost(fmt::format("nothing was heard of the launcher for {} s", lost_s_));
     }
-    channel_->drain(2.0);
     std::error_code error;
     if (fetched_) std::filesystem::remove_all(task_.directory, error);
+    channel_->drain(2.0);
     return {};
   }
 

@@ -14,6 +14,7 @@ namespace bodeflow::execute {
 
 struct Run;
 struct Chunk;
+struct Asked;
 
 /// Where a record goes from a message output.
 struct Route {
@@ -81,7 +82,10 @@ struct alignas(64) BlockRun {
   bool source = false;              ///< no stream inputs: it says itself when it ends
   std::vector<Feed> feeds;
   std::atomic<std::int64_t> end{kNever};  ///< firings until the end of its streams, as far as known
-  std::atomic<std::int64_t> reached{0};   ///< `position`, now and then, for the watchdog
+  std::atomic<std::int64_t> reached{0};   ///< `position`, now and then, for the watchdog and who looks on
+  std::atomic<Asked*> asked{nullptr};     ///< the last change that was asked for from outside and not taken yet
+  std::int64_t changes_taken = 0;         ///< of those
+  std::vector<ParameterValue> values;     ///< of all parameters, where an observer may change them
 
   Inbox inbox;
   std::vector<std::vector<Route>> routes;  ///< by message output
@@ -144,6 +148,19 @@ inline bool fire(BlockRun& block, std::int64_t count, Lane& lane) {
 /// Makes the firings up to `end` (an index), taking records and changes where they are due and never more than
 /// Options::call_limit at once. False: the run is to end.
 bool fire_to(BlockRun& block, std::int64_t end, Lane& lane);
+
+/// A block with streams takes the changes that were asked for from outside: they stand before its coming firing. Whatever else
+/// is due before that firing has been sent and is not taken yet.
+void take_asked(BlockRun& block);
+/// A block without streams takes them at the begin of the first period of the phase at or behind `horizon`, before which it may
+/// have taken all.
+void take_asked_before(BlockRun& block, const Horizon& horizon);
+
+/// Brings in what other threads sent or asked for.
+inline void collect(BlockRun& block) {
+  block.inbox.collect();
+  if (block.has_streams() && block.asked.load(std::memory_order_relaxed) != nullptr) take_asked(block);
+}
 
 /// Fires as `fire_to`, over the short way where nothing is due.
 inline bool advance(BlockRun& block, std::int64_t count, bool limited, Lane& lane) {

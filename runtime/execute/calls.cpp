@@ -42,7 +42,7 @@ void settle_ends(const Op& op) {
 bool PartitionRun::run_call(Op& op, const Chunk& chunk) {
   BlockRun& block = *op.block;
   if (!block.has_streams()) return take_turn(block, chunk, lane);
-  if (block.takes_messages) block.inbox.collect();
+  if (block.takes_messages) collect(block);
   std::int64_t end = chunk.end * block.per_repetition;
   if (!whole(chunk)) {
     update_end(block);
@@ -62,7 +62,7 @@ bool PartitionRun::run_call(Op& op, const Chunk& chunk) {
 
 bool PartitionRun::run_cluster(Op& op, const Chunk& chunk) {
   for (BlockRun* block : op.blocks) {
-    if (block->takes_messages) block->inbox.collect();
+    if (block->takes_messages) collect(*block);
     if (block->has_streams()) begin_chunk(*block, chunk);
   }
   for (CopyRun& one : op.copies) one.done = chunk.begin * one.writer->per_repetition;

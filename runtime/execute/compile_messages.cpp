@@ -84,6 +84,36 @@ void add_schedule(Run& run) {
   }
 }
 
+/// Changes that were made by hand in the run that is repeated.
+void add_past_changes(Run& run) {
+  const auto& changes = run.options.past_changes;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    BlockRun& to = run.block(changes[i].block);
+    Entry entry;
+    entry.kind = Entry::Kind::change;
+    entry.due = changes[i].position;
+    entry.time = to.has_streams() ? time_of(entry.due, to.rate) : run.time_of_period(entry.due);
+    entry.edge = kScheduleEdge;
+    entry.sequence = static_cast<std::int64_t>(run.schedule.size() + i);
+    entry.parameter = changes[i].parameter;
+    entry.value = &changes[i].value;
+    entry.live = true;
+    to.takes_messages = true;
+    to.inbox.add(std::move(entry));
+  }
+}
+
+/// Blocks whose parameters an observer may change look for that at the start of each chunk.
+void open_to_observer(Run& run) {
+  if (run.options.observer == nullptr) return;
+  for (const auto& block : run.blocks) {
+    const auto& parameters = block->instance->type().parameters;
+    if (std::none_of(parameters.begin(), parameters.end(), [](const auto& p) { return p.live; })) continue;
+    block->takes_messages = true;
+    block->values = run.phase->blocks[static_cast<std::size_t>(block->index)].parameters;
+  }
+}
+
 }  // namespace
 
 tl::expected<void, std::string> compile_messages(Run& run, const std::vector<InitialRecord>& initial) {
@@ -102,6 +132,8 @@ tl::expected<void, std::string> compile_messages(Run& run, const std::vector<Ini
     if (auto added = add_edge(run, static_cast<int>(i)); !added) return added;
   add_initial(run, initial);
   add_schedule(run);
+  add_past_changes(run);
+  open_to_observer(run);
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "execute/access.hpp"
 #include "execute/change.hpp"
 #include "execute/run.hpp"
 
@@ -66,30 +67,59 @@ bool call_empty(BlockRun& block, std::int32_t (*function)(void*, bf_process*), c
   return go_on;
 }
 
-bool apply(BlockRun& block, int parameter, const ParameterValue& value, Lane& lane) {
-  Run& run = *block.run;
+Instance::Result change(BlockRun& block, int parameter, const ParameterValue& value, Lane& lane) {
   const Stopwatch stopwatch(block);
   lane.function("change");
   lane.call(block.index);
-  const auto changed = block.instance->change(static_cast<std::uint32_t>(parameter), value);
+  auto changed = block.instance->change(static_cast<std::uint32_t>(parameter), value);
   lane.function("process");
-  if (run.control.stopping()) return false;
-  if (!changed) {
-    run.control.fail(block.index, changed.error());
+  return changed;
+}
+
+void changed(BlockRun& block, int parameter, const ParameterValue& value, std::int64_t position, Cause cause) {
+  if (!block.values.empty()) block.values[static_cast<std::size_t>(parameter)] = value;
+  block.run->sink->changed(block.index, parameter, value, static_cast<std::uint64_t>(position), cause);
+}
+
+bool apply(BlockRun& block, int parameter, const ParameterValue& value, std::int64_t position, Cause cause, Lane& lane) {
+  const auto done = change(block, parameter, value, lane);
+  if (block.control->stopping()) return false;
+  if (!done) {
+    block.run->control.fail(block.index, done.error());
     return false;
   }
-  run.sink->changed(block.index, parameter, value, static_cast<std::uint64_t>(block.position));
+  changed(block, parameter, value, position, cause);
   return true;
 }
 
+/// A person who asks for what the block refuses is told so, and the block keeps the value that it has: no end of the run.
+bool apply_asked(BlockRun& block, const Entry& entry, std::int64_t position, Lane& lane) {
+  Asked& asked = *entry.asked;
+  const auto done = change(block, entry.parameter, asked.value, lane);
+  if (block.control->stopping()) return false;
+  if (done) {
+    changed(block, entry.parameter, asked.value, position, Cause::live);
+    asked.position.store(position, std::memory_order_release);
+    return true;
+  }
+  asked.refusal = done.error();
+  asked.position.store(Asked::kRefused, std::memory_order_release);
+  const auto back = change(block, entry.parameter, block.values[static_cast<std::size_t>(entry.parameter)], lane);
+  if (!back) block.run->control.fail(block.index, back.error());
+  return !block.control->stopping();
+}
+
 bool take_change(BlockRun& block, const Entry& entry, Lane& lane) {
-  if (entry.kind == Entry::Kind::change) return apply(block, entry.parameter, *entry.value, lane);
+  const std::int64_t position = entry.live && !block.has_streams() ? entry.due : block.position;
+  if (entry.asked != nullptr) return apply_asked(block, entry, position, lane);
+  if (entry.kind == Entry::Kind::change)
+    return apply(block, entry.parameter, *entry.value, position, entry.live ? Cause::live : Cause::schedule, lane);
   const auto change = parameter_change(block.instance->type(), RecordView(*entry.record.c()));
   if (!change) {
     block.run->control.fail(block.index, change.error());
     return false;
   }
-  return apply(block, change->parameter, change->value, lane);
+  return apply(block, change->parameter, change->value, position, Cause::record, lane);
 }
 
 bool is_change(const Entry& entry) {
@@ -227,6 +257,7 @@ bool take_turn(BlockRun& block, const Chunk& chunk, Lane& lane) {
   Horizon horizon{true, {}};
   for (const Origin& origin : block.origins) horizon = earlier(horizon, horizon_of(block, origin, chunk));
   block.inbox.collect();
+  if (block.asked.load(std::memory_order_relaxed) != nullptr) take_asked_before(block, horizon);
   while (!block.inbox.empty() && horizon.beyond(block.inbox.front().time)) {
     // Changes after the last record may lie beyond the end of the run.
     if (horizon.endless && !block.inbox.has_records()) break;

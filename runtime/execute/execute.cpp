@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "execute/access.hpp"
 #include "execute/compile.hpp"
 #include "execute/crew.hpp"
 #include "execute/finish.hpp"
@@ -99,6 +100,23 @@ Outcome outcome_of(const Run& run, bool hung, const std::string& hang) {
   return outcome;
 }
 
+/// An observer's access to the run, as long as it lives.
+class Watched {
+ public:
+  explicit Watched(Run& run) : access_(run), observer_(run.options.observer) {
+    if (observer_ != nullptr) observer_->begins(access_);
+  }
+  ~Watched() {
+    if (observer_ != nullptr) observer_->ends();
+  }
+  Watched(const Watched&) = delete;
+  Watched& operator=(const Watched&) = delete;
+
+ private:
+  Access access_;
+  Observer* observer_;
+};
+
 Outcome execute_all(const std::shared_ptr<Run>& run, const std::vector<std::unique_ptr<Instance>>& instances,
                     const std::vector<InitialRecord>& initial) {
   if (auto compiled = compile(*run, instances, initial); !compiled) return refused(compiled.error());
@@ -110,6 +128,7 @@ Outcome execute_all(const std::shared_ptr<Run>& run, const std::vector<std::uniq
   if (activated == instances.size()) {
     const LockedMemory locked(run->phase->run, run->options.warn);
     run->started = Clock::now();
+    const Watched watched(*run);
     const Reporter reporter(*run);
     Crew crew(run);
     try {

@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "execute/lateness.hpp"
+#include "execute/access.hpp"
 #include "plan/plan.hpp"
 
 namespace bodeflow::execute {
 
 class RemoteEnd;
+
+/// Who asked for a change of a live parameter.
+enum class Cause { schedule, record, live };
 
 /// Takes what a run keeps. Calls about one port come from one thread at a time; different ports may come from different threads.
 class Sink {
@@ -22,14 +25,17 @@ class Sink {
   virtual tl::expected<void, std::string> samples(int recorded, const void* const* channels, std::uint64_t count) = 0;
   /// A record of any message output of the phase, at its producer's time.
   virtual tl::expected<void, std::string> record(graph::End from, const SharedRecord& record, double time_s) = 0;
-  /// A live parameter took a value before sample `position` of its block.
-  virtual void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position) = 0;
+  /// A live parameter took a value before firing `position` of its block. (Of a block without streams: the period of the phase
+  /// at whose begin it did, where the cause is `live`.)
+  virtual void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position, Cause cause) = 0;
 };
 
-struct Progress {
-  double time_s = 0.0;   ///< of the run's clock, done
-  double total_s = 0.0;  ///< 0: not known
-  double rate = 0.0;     ///< seconds of the run's clock per second of wall time
+/// A change that was asked for while an earlier run went on, for its repetition: in effect where it was then.
+struct PastChange {
+  int block = 0;
+  int parameter = 0;
+  ParameterValue value;
+  std::int64_t position = 0;  ///< as Sink::changed told
 };
 
 struct Options {
@@ -45,6 +51,8 @@ struct Options {
   bool metrics = true;                            ///< time and calls of each block
   std::map<int, RemoteEnd*> remote_ends;          ///< by block: ends of links to other processes
   Rate least_end;                                 ///< seconds; when the run ends on other hosts at the earliest
+  Observer* observer = nullptr;                   ///< sees the run and changes live parameters while it goes on
+  std::vector<PastChange> past_changes;           ///< in the order in which they had effect
 };
 
 /// A record of an earlier phase for a message input, delivered at time zero.

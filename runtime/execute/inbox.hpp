@@ -12,6 +12,8 @@
 
 namespace bodeflow::execute {
 
+struct Asked;
+
 inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
 /// Something that a block takes before one of its firings.
@@ -19,10 +21,10 @@ struct Entry {
   enum class Kind {
     barrier,  ///< wait until an asynchronous block has done `job`: its records may be next
     record,   ///< for message input `port`, or graph::kParameterPort
-    change    ///< a scheduled change of a live parameter
+    change    ///< of a live parameter: by the schedule, or asked for from outside
   };
   Kind kind = Kind::record;
-  std::int64_t due = 0;       ///< the firing; blocks without streams go by `time`
+  std::int64_t due = 0;       ///< the firing; blocks without streams go by `time` (of a live change: the period of the phase)
   Time time;                  ///< of effect: the producer's, and the latency
   int edge = 0;               ///< index into Phase::messages; kInitialEdge, kScheduleEdge
   std::int64_t sequence = 0;  ///< on that edge
@@ -31,6 +33,8 @@ struct Entry {
   double made_s = 0.0;                    ///< when its producer made it
   int parameter = -1;                     ///< change
   const ParameterValue* value = nullptr;  ///< change: lives as long as the run
+  bool live = false;                      ///< change: from outside, now or in the run that is repeated
+  Asked* asked = nullptr;                 ///< change: from outside, now
   int worker = -1;                        ///< barrier: which asynchronous block
   std::int64_t job = 0;
 };

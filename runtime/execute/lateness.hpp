@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -18,7 +19,8 @@ struct Lateness {
   std::vector<std::uint64_t> bins;
 };
 
-/// Counts latenesses; each octave from 1 us to 1 s has sixteen bins. Adding neither allocates nor locks; one thread at a time.
+/// Counts latenesses; each octave from 1 us to 1 s has sixteen bins. Adding neither allocates nor locks; one thread adds at a
+/// time, any thread may read meanwhile (what is being added then counts or does not).
 class LatenessCounter {
  public:
   void add(std::int64_t nanoseconds);
@@ -29,11 +31,9 @@ class LatenessCounter {
   static constexpr std::size_t kParts = 16;                                  ///< of an octave, and of the first microsecond
   static constexpr std::size_t kCells = (Lateness::kBins - 1) * kParts + 1;  ///< the last one holds the rest
 
-  double quantile(double share) const;
-
-  std::array<std::uint64_t, kCells> cells_{};
-  std::uint64_t chunks_ = 0;
-  std::int64_t min_ = 0, max_ = 0;
+  std::array<std::atomic<std::uint64_t>, kCells> cells_{};
+  std::atomic<std::uint64_t> chunks_{0};
+  std::atomic<std::int64_t> min_{0}, max_{0};
 };
 
 }  // namespace bodeflow::execute

@@ -24,6 +24,11 @@ class Worker {
   /// Queues an entry; its number, counting from one. One thread at a time.
   std::int64_t hand(Entry entry);
   bool done(std::int64_t job) const { return done_.load(std::memory_order_acquire) >= job; }
+  /// [any thread] Entries that were handed over and are not done.
+  std::int64_t pending() const {
+    const std::int64_t done = done_.load(std::memory_order_acquire);
+    return handed_.load(std::memory_order_relaxed) - done;
+  }
   /// Waits until `job` is done. False: the run is stopping.
   bool wait(std::int64_t job, int waiting, Lane& lane);
   /// Waits until all is done. False: the run is stopping.
@@ -42,7 +47,7 @@ class Worker {
   std::mutex mutex_;
   std::deque<Entry> queue_;
   bool closed_ = false;
-  std::int64_t handed_ = 0;
+  std::atomic<std::int64_t> handed_{0};
   std::atomic<std::int64_t> done_{0};
 };
 

@@ -30,9 +30,15 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
   execution.seed = seed_of(phase, repeat);
   execution.vector_level = options.vector_level;
   execution.stop = options.stop;
+  execution.observer = options.watch;
+  for (const PastChanges& past : options.past_changes)
+    if (past.phase == phase.name && past.repeat == repeat) execution.past_changes = past.changes;
   if (options.progress) execution.progress = [&](const execute::Progress& progress) { options.progress(phase.name, progress); };
+  execute::Sink& watched =
+      options.watch == nullptr ? **sink : options.watch->begin_phase(phase, repeat, prepared.facts, prepared.plan, **sink);
   const execute::Outcome outcome =
-      execute::execute(phase, prepared.facts, prepared.plan, prepared.instances, *initial, **sink, execution);
+      execute::execute(phase, prepared.facts, prepared.plan, prepared.instances, *initial, watched, execution);
+  if (options.watch != nullptr) options.watch->end_phase();
   if (const std::string kept = record::pacing_text(outcome); !kept.empty()) services.log("clock", BF_LOG_INFO, kept);
   const auto ended = directory.end_phase(outcome);
 
@@ -55,6 +61,22 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
   } else if (!ended) {
     return failure(phase, ended.error());
   }
+  return result;
+}
+
+/// A sweep; who looks on sees its merged records.
+RunResult watched_sweep(const graph::Graph& graph, const graph::Phase& phase, record::RunDirectory& directory,
+                        const RunOptions& options, int repeat) {
+  if (options.watch == nullptr) return run_sweep(graph, phase, directory, options);
+  options.watch->begin_sweep(phase, repeat);
+  RunResult result = run_sweep(graph, phase, directory, options);
+  for (std::size_t b = 0; b < phase.blocks.size(); ++b)
+    for (const auto& port : phase.blocks[b].type->ports) {
+      if (port.kind != BF_MESSAGE || port.direction != BF_OUT) continue;
+      if (const SharedRecord merged = directory.last_record(phase.name, phase.blocks[b].name, port.name))
+        options.watch->add_record(phase, {static_cast<int>(b), port.index}, merged);
+    }
+  options.watch->end_phase();
   return result;
 }
 
@@ -155,7 +177,7 @@ RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registr
               const Services& services, const RunOptions& options) {
   const auto run_phase = [&](std::size_t index, int repeat) -> RunResult {
     const graph::Phase& phase = graph.phases[index];
-    if (!phase.sweep.empty()) return run_sweep(graph, phase, directory, options);
+    if (!phase.sweep.empty()) return watched_sweep(graph, phase, directory, options, repeat);
     if (repeat > 0) {
       auto again = prepare(phase, registry, services.host(), options.plan);
       if (!again) return rejection(phase, again.error());

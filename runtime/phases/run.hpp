@@ -4,10 +4,18 @@
 #include <filesystem>
 #include <functional>
 
+#include "observe/watch.hpp"
 #include "phases/prepare.hpp"
 #include "phases/services.hpp"
 
 namespace bodeflow::phases {
+
+/// Changes that were made by hand while a phase of the run that is repeated went on.
+struct PastChanges {
+  std::string phase;
+  int repeat = 0;
+  std::vector<execute::PastChange> changes;
+};
 
 struct RunOptions {
   PlanSettings plan;
@@ -16,6 +24,8 @@ struct RunOptions {
   std::function<void(const std::string& phase, const execute::Progress&)> progress;
   std::filesystem::path command;         ///< our own executable: the worker processes of a sweep run `command phase-worker ...`
   std::vector<std::string> plugin_path;  ///< their --path
+  observe::Watch* watch = nullptr;       ///< sees the run and changes live parameters while it goes on
+  std::vector<PastChanges> past_changes;
 };
 
 struct RunResult {

@@ -17,6 +17,17 @@ constexpr std::chrono::milliseconds kPollInterval{20};
 constexpr std::size_t kWaitingBytes = std::size_t{256} << 20U;
 constexpr std::size_t kStreamLeast = std::size_t{2} << 20U, kStreamMost = std::size_t{8} << 20U;
 
+const char* cause_word(execute::Cause cause) {
+  switch (cause) {
+    case execute::Cause::schedule:
+      return "schedule";
+    case execute::Cause::record:
+      return "record";
+    default:
+      return "live";
+  }
+}
+
 }  // namespace
 
 Recorder::Recorder(DataWriter& data, Event event) : data_(data), event_(std::move(event)) {}
@@ -91,9 +102,9 @@ tl::expected<void, std::string> Recorder::record(graph::End from, const SharedRe
   return refused();
 }
 
-void Recorder::changed(int block, int parameter, const ParameterValue& value, std::uint64_t position) {
+void Recorder::changed(int block, int parameter, const ParameterValue& value, std::uint64_t position, execute::Cause cause) {
   const std::lock_guard lock(changes_mutex_);
-  changes_.push_back({utc_now(), block, parameter, value, position});
+  changes_.push_back({utc_now(), block, parameter, value, position, cause});
 }
 
 void Recorder::wake() {
@@ -181,6 +192,7 @@ void Recorder::drain_changes() {
     details["parameter"] = block.parameters[static_cast<std::size_t>(change.parameter)];
     details["value"] = to_json(change.value);
     details["position"] = change.position;
+    details["by"] = cause_word(change.cause);
     event_("parameter changed", std::move(details));
   }
 }

@@ -34,7 +34,7 @@ class Recorder final : public execute::Sink {
 
   tl::expected<void, std::string> samples(int recorded, const void* const* channels, std::uint64_t count) override;
   tl::expected<void, std::string> record(graph::End from, const SharedRecord& record, double time_s) override;
-  void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position) override;
+  void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position, execute::Cause cause) override;
 
   /// Writes what is left and ends the phase in data.h5. Later calls of the sink are refused. Error: the first that happened.
   tl::expected<void, std::string> finish();
@@ -70,6 +70,7 @@ class Recorder final : public execute::Sink {
     int parameter;
     ParameterValue value;
     std::uint64_t position;
+    execute::Cause cause;
   };
   struct BlockNames {
     std::string name;

@@ -41,7 +41,7 @@ class Nothing final : public execute::Sink {
  public:
   tl::expected<void, std::string> samples(int, const void* const*, std::uint64_t) override { return {}; }
   tl::expected<void, std::string> record(graph::End, const SharedRecord&, double) override { return {}; }
-  void changed(int, int, const ParameterValue&, std::uint64_t) override {}
+  void changed(int, int, const ParameterValue&, std::uint64_t, execute::Cause) override {}
 };
 
 /// 500 blocks in chains of ten, with a decimator, a delay and a loop here and there.

@@ -22,7 +22,7 @@ class LastRecord final : public execute::Sink {
     last = record;
     return {};
   }
-  void changed(int, int, const ParameterValue&, std::uint64_t) override {}
+  void changed(int, int, const ParameterValue&, std::uint64_t, execute::Cause) override {}
 
   SharedRecord last;
 };

@@ -165,7 +165,14 @@ Result Bench::run(const Cut& cut, std::vector<std::unique_ptr<Instance>>& instan
   execute::Options chosen = options;
   chosen.first_chunk = cut.first_chunk;
   chosen.call_limit = cut.call_limit;
-  result.outcome = execute::execute(phase, *facts, *plan, instances, initial, sink, chosen);
+  if (watch == nullptr) {
+    result.outcome = execute::execute(phase, *facts, *plan, instances, initial, sink, chosen);
+    return result;
+  }
+  chosen.observer = watch;
+  result.outcome =
+      execute::execute(phase, *facts, *plan, instances, initial, watch->begin_phase(phase, 0, *facts, *plan, sink), chosen);
+  watch->end_phase();
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "execute/execute.hpp"
+#include "observe/watch.hpp"
 
 namespace bodeflow::test {
 
@@ -26,6 +27,7 @@ struct Changed {
   std::string block, parameter;
   ParameterValue value;
   std::uint64_t position = 0;
+  execute::Cause cause = execute::Cause::schedule;
 
   bool operator==(const Changed&) const = default;
 };
@@ -71,6 +73,8 @@ class Bench {
   /// Called with each piece of a stream that is kept; an error ends the run.
   OnSamples on_samples;
   std::vector<execute::InitialRecord> initial;
+  /// Sees the run, where set.
+  observe::Watch* watch = nullptr;
 
   int add(const std::string& name, const std::string& id, const std::map<std::string, Value>& parameters = {});
   /// "a.out" to "b.in", or "a" to "b" for the first ports.

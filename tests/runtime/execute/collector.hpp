@@ -31,10 +31,11 @@ class Collector final : public execute::Sink {
     return {};
   }
 
-  void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position) override {
+  void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position, execute::Cause cause) override {
     const std::lock_guard lock(mutex_);
     const graph::Block& b = phase_.blocks[static_cast<std::size_t>(block)];
-    result_.changes[b.name].push_back({b.name, b.type->parameters[static_cast<std::size_t>(parameter)].name, value, position});
+    result_.changes[b.name].push_back(
+        {b.name, b.type->parameters[static_cast<std::size_t>(parameter)].name, value, position, cause});
   }
 
  private:

@@ -19,6 +19,7 @@
 #include "catch.hpp"
 #include "execute/execute.hpp"
 #include "graph/load.hpp"
+#include "observe/watch.hpp"
 #include "phases/prepare.hpp"
 #include "record/run_directory.hpp"
 #include "runtime/record/temporary_folder.hpp"
@@ -129,8 +130,8 @@ class Watch final : public execute::Sink {
   tl::expected<void, std::string> record(graph::End from, const SharedRecord& record, double time_s) override {
     return recording_.record(from, record, time_s);
   }
-  void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position) override {
-    recording_.changed(block, parameter, value, position);
+  void changed(int block, int parameter, const ParameterValue& value, std::uint64_t position, execute::Cause cause) override {
+    recording_.changed(block, parameter, value, position, cause);
   }
 
  private:
@@ -163,7 +164,7 @@ struct Counted {
   std::map<long, long> calls;  ///< by the number of the system call
 };
 
-Counted run(int threads, std::function<void()> mischief = {}) {
+Counted run(int threads, std::function<void()> mischief = {}, observe::Watch* watch = nullptr) {
   Registry registry{{{BODEFLOW_PLUGINS}, {}, BODEFLOW_PROBE_HELPER}};
   const auto graph = graph::load_text(kGraph, "graph.yaml", {}, registry);
   if (!graph) FAIL(to_string(graph.error()));
@@ -178,8 +179,11 @@ Counted run(int threads, std::function<void()> mischief = {}) {
   if (!prepared) FAIL(to_string(prepared.error()));
   const record_tests::TemporaryFolder folder;
   const auto directory = record::RunDirectory::create({folder.path() / "run", "graph", {}}, *graph).value();
-  Watch sink(*directory->begin_phase(phase, prepared->facts, {}, 0).value(), std::move(mischief));
+  execute::Sink& recording = *directory->begin_phase(phase, prepared->facts, {}, 0).value();
+  Watch sink(watch == nullptr ? recording : watch->begin_phase(phase, 0, prepared->facts, prepared->plan, recording),
+             std::move(mischief));
   execute::Options options;
+  options.observer = watch;
   options.clock = phase.run.clock;
   Counted counted;
   allocations = locks = 0;
@@ -200,9 +204,8 @@ Counted run(int threads, std::function<void()> mischief = {}) {
   return counted;
 }
 
-TEST_CASE("compute threads of a recorded realtime run allocate nothing, take no lock and call the system only to wait") {
-  const int threads = GENERATE(1, 2);
-  Counted counted = run(threads);
+/// As the tests want it of `threads` compute threads.
+void check_undisturbed(Counted counted, int threads) {
   CHECK(counted.allocations == 0);
   CHECK(counted.locks == 0);
   CHECK(counted.calls[SYS_clock_nanosleep] >= 100);
@@ -210,6 +213,29 @@ TEST_CASE("compute threads of a recorded realtime run allocate nothing, take no 
   if (threads > 1) counted.calls.erase(SYS_futex);  // one compute thread waits for the other
   for (const auto& [number, times] : counted.calls) UNSCOPED_INFO("system call " << number << " " << times << " times");
   CHECK(counted.calls.empty());
+}
+
+TEST_CASE("compute threads of a recorded realtime run allocate nothing, take no lock and call the system only to wait") {
+  const int threads = GENERATE(1, 2);
+  check_undisturbed(run(threads), threads);
+}
+
+TEST_CASE("compute threads do so too while somebody looks on all the time") {
+  const int threads = GENERATE(1, 2);
+  observe::Watch watch;
+  std::atomic<bool> over{false};
+  std::atomic<std::int64_t> seen{0};
+  std::thread onlooker([&] {
+    while (!over) {
+      if (const observe::Look look = watch.look(); !look.state.firings.empty()) seen = look.state.firings[0];
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  Counted counted = run(threads, {}, &watch);
+  over = true;
+  onlooker.join();
+  CHECK(seen > 0);
+  check_undisturbed(std::move(counted), threads);
 }
 
 TEST_CASE("the watch of compute threads sees one that allocates, locks and calls the system") {

@@ -117,7 +117,7 @@ TEST_CASE("errors: a plan for another phase is refused") {
   class Nothing final : public execute::Sink {
     tl::expected<void, std::string> samples(int, const void* const*, std::uint64_t) override { return {}; }
     tl::expected<void, std::string> record(graph::End, const SharedRecord&, double) override { return {}; }
-    void changed(int, int, const ParameterValue&, std::uint64_t) override {}
+    void changed(int, int, const ParameterValue&, std::uint64_t, execute::Cause) override {}
   } sink;
   const auto facts = plan::establish_facts(bench.phase, instances);
   REQUIRE(facts);

@@ -244,8 +244,8 @@ TEST_CASE("changes of live parameters stand in the events with block, parameter,
   poles.type = BF_COMPLEX_LIST;
   poles.rows = 2;
   poles.numbers = {-1.0, 2.0, -1.0, -2.0};
-  (*sink)->changed(0, 0, gain, 1234);
-  (*sink)->changed(0, 1, poles, 1235);
+  (*sink)->changed(0, 0, gain, 1234, execute::Cause::schedule);
+  (*sink)->changed(0, 1, poles, 1235, execute::Cause::live);
   REQUIRE(run->end_phase({}));
   std::vector<ordered_json> changes;
   for (const auto& event : read_events(run->path()))
@@ -256,6 +256,8 @@ TEST_CASE("changes of live parameters stand in the events with block, parameter,
   CHECK(changes[0]["parameter"] == "gain");
   CHECK(changes[0]["value"] == 0.1);
   CHECK(changes[0]["position"] == 1234);
+  CHECK(changes[0]["by"] == "schedule");
+  CHECK(changes[1]["by"] == "live");
   CHECK(changes[1]["parameter"] == "poles");
   CHECK(changes[1]["value"] == ordered_json({{-1.0, 2.0}, {-1.0, -2.0}}));
 }

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "commands/command.hpp"
+#include "commands/past_changes.hpp"
 #include "commands/run_graph.hpp"
 #include "commands/vector_level.hpp"
 #include "console/json_output.hpp"
@@ -79,6 +80,12 @@ int rerun(const Session& session, const RerunCommand& command) {
     say_problems(graph.error());
     return kRejected;
   }
+  auto changes = read_past_changes(command.directory, *graph);
+  if (!changes) {
+    say_error(changes.error());
+    return kRejected;
+  }
+  options.past_changes = std::move(*changes);
   options.command = manifest->value("command", nlohmann::json::object());
   if (const int threads = options.command.value("threads", 0); threads > 0) options.plan.threads = threads;
   if (const std::int64_t chunk = options.command.value("chunk", std::int64_t{0}); chunk > 0) options.plan.chunk = chunk;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <charconv>
 #include <filesystem>
 
 #include "commands/command.hpp"
@@ -23,8 +24,37 @@ struct RunCommand {
   bool dry_run = false;
   bool here = false;
   std::string host;
+  std::string live;
   LabOptions lab;
 };
+
+constexpr const char* kFreePort = "free";
+
+/// The port of --live, 0 for any that is free; -1: no port.
+int live_port(const std::string& text) {
+  if (text == kFreePort) return 0;
+  int port = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+  return error == std::errc() && end == text.data() + text.size() && port >= 1 && port <= 65535 ? port : -1;
+}
+
+/// The port of the page that was asked for, or nothing; false, and said: there can be none.
+bool read_live(const RunCommand& command, bool over_hosts, RunGraph& options) {
+  if (command.live.empty()) return true;
+  const int port = live_port(command.live);
+  if (port < 0) {
+    say_error(fmt::format("--live={}: allowed is a port from 1 to 65535, or --live alone for any that is free", command.live));
+    return false;
+  }
+  if (over_hosts) {
+    say_error(
+        "--live shows what this process runs, and here blocks run on other hosts: 'bodeflow top' shows those; with --here "
+        "all blocks run in this process");
+    return false;
+  }
+  options.live = port;
+  return true;
+}
 
 int dry_run(const RunCommand& command, const graph::Graph& graph, Registry& registry, const phases::PlanSettings& settings) {
   const auto prepared = phases::prepare_all(graph, registry, phases::Services(), settings);
@@ -36,8 +66,11 @@ int dry_run(const RunCommand& command, const graph::Graph& graph, Registry& regi
 }
 
 int run(const Session& session, const RunCommand& command) {
-  if (!command.host.empty()) return serve_lab(session, {command.lab, command.host, "", 0.0, true});
   RunGraph options;
+  if (!command.host.empty()) {
+    if (!read_live(command, true, options)) return kUsage;
+    return serve_lab(session, {command.lab, command.host, "", 0.0, true});
+  }
   options.vector_level = command.isa.empty() ? processor_vector_level() : vector_level_of(command.isa);
   if (options.vector_level > processor_vector_level()) {
     say_error(fmt::format("--isa {}: this processor has {}", command.isa, vector_level_name(processor_vector_level())));
@@ -50,11 +83,13 @@ int run(const Session& session, const RunCommand& command) {
   if (command.chunk > 0) options.plan.chunk = command.chunk;
   if (command.dry_run) return dry_run(command, *graph, registry, options.plan);
 
+  const bool over_hosts = lab::has_hosts(*graph) && !command.here;
+  if (!read_live(command, over_hosts, options)) return kUsage;
   options.out = command.out;
   options.executable = session.executable;
   options.plugin_path = session.plugin_path;
   options.command = {{"threads", command.threads}, {"chunk", command.chunk}};
-  if (lab::has_hosts(*graph) && !command.here) {
+  if (over_hosts) {
     auto settings = command.lab.settings("");
     if (!settings) {
       say_error(settings.error() + ", or --here (all blocks in this process)");
@@ -96,6 +131,8 @@ void add_run(CLI::App& app, Session& session) {
   command->add_option("--host", options->host, "Serve one run as this host of the graph, by hand, in place of an agent")
       ->type_name("NAME");
   command->add_flag("--here", options->here, "All blocks in this process, whatever hosts the graph names");
+  command->add_flag(fmt::format("--live{{{}}}", kFreePort), options->live,
+                    "Show the run in a browser on this machine, where live parameters can be changed: --live, or --live=PORT");
   options->lab.add_to(*command);
   options->graph.add_json_to(*command);
   command->callback([&session, options] { session.action = [&session, options] { return run(session, *options); }; });

@@ -9,6 +9,8 @@
 #include "commands/plans.hpp"
 #include "commands/vector_level.hpp"
 #include "console/console.hpp"
+#include "live/state_json.hpp"
+#include "live/view.hpp"
 #include "report/report.hpp"
 #include "transport/service.hpp"
 
@@ -112,15 +114,48 @@ phases::RunResult run_over_hosts(const graph::Graph& graph, const Registry& regi
   return lab::launch(graph, registry, directory, launch);
 }
 
+/// What became of changes that were asked for by hand: for the console, the log and the page.
+void tell_changes(live::View& view, record::RunDirectory& directory, ProgressLine& progress) {
+  for (const observe::Change& change : view.watch().news()) {
+    const bool taken = change.status == observe::Change::Status::taken;
+    const std::string text = live::change_text(change);
+    const int level = taken ? BF_LOG_INFO : BF_LOG_WARNING;
+    directory.log("live", level, text);
+    if (!taken)
+      directory.event("parameter not changed",
+                      {{"phase", change.phase}, {"repeat", change.repeat}, {"reason", text}, {"by", "live"}});
+    progress.clear();
+    say_block("live", level, text);
+  }
+}
+
+void log_warnings(live::View& view, const std::vector<phases::Prepared>& prepared) {
+  for (const auto& phase : prepared) {
+    for (const auto& warning : phase.facts.warnings) view.log("graph", BF_LOG_WARNING, warning);
+    for (const auto& [block, said] : phase.advice)
+      if (said.level >= BF_LOG_WARNING) view.log(block, said.level, said.text);
+  }
+}
+
 }  // namespace
 
 RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph& options) {
   ProgressLine progress;
+  std::unique_ptr<live::View> view;  // outlives all that it shows
+  if (options.live) {
+    auto opened = live::View::open(*options.live, graph);
+    if (!opened) {
+      say_error("--live: " + opened.error());
+      return {kDevice, {}, {}};
+    }
+    view = std::move(*opened);
+  }
   const std::atomic<bool>* stopped = nullptr;
   const transport::Service topics({}, [&stopped] { return stopped == nullptr || !*stopped; });  // outlives the blocks
-  phases::Services services([&progress](const std::string& block, int level, const std::string& text) {
+  phases::Services services([&progress, &view](const std::string& block, int level, const std::string& text) {
     progress.clear();
     say_block(block, level, text);
+    if (view) view->log(block, level, text);
   });
   services.provide(BF_EXTENSION_TRANSPORT, &topics.c());
   std::vector<phases::Prepared> prepared;
@@ -132,6 +167,7 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
     }
     prepared = std::move(*all);
     say_warnings(prepared);
+    if (view) log_warnings(*view, prepared);
   }
 
   auto directory = record::RunDirectory::create(
@@ -145,6 +181,10 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
   const std::atomic<bool>& stop = stop_on_interrupt();  // until here there is nothing to keep
   services.attach(**directory);
   stopped = &stop;
+  if (view) {
+    view->begins((*directory)->path());
+    say("Live: " + view->address());
+  }
 
   phases::RunResult result;
   if (options.lab) {
@@ -156,10 +196,18 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
     run.stop = &stop;
     run.command = options.executable;
     run.plugin_path = options.plugin_path;
-    run.progress = [&progress](const std::string& phase, const execute::Progress& now) { progress.show(phase, now); };
+    run.past_changes = options.past_changes;
+    if (view) run.watch = &view->watch();
+    run.progress = [&](const std::string& phase, const execute::Progress& now) {
+      progress.show(phase, now);
+      if (!view) return;
+      view->watch().sweep_progress(now);
+      tell_changes(*view, **directory, progress);
+    };
     result = phases::run(graph, std::move(prepared), registry, **directory, services, run);
   }
   progress.clear();
+  if (view) tell_changes(*view, **directory, progress);
 
   const auto closed = (*directory)->close(phases::status_word(result.status), result.reason);
   RanGraph ran{exit_code_of(result.status), (*directory)->path(), (*directory)->result()};
@@ -169,6 +217,7 @@ RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph
     if (ran.exit_code == kDone) ran.exit_code = kRunFailed;
   }
   if (result.hung) std::_Exit(ran.exit_code);
+  if (view) view->ends(phases::status_word(result.status), result.reason);
   if (closed) write_run_report(ran.directory, registry);
   return ran;
 }

@@ -14,9 +14,11 @@ struct RunGraph {
   nlohmann::json command;            ///< what `rerun` must repeat, for the manifest
   std::filesystem::path executable;  ///< our own, for the workers of sweeps, with their --path
   std::vector<std::string> plugin_path;
-  std::vector<std::string> part_command;   ///< of this machine's own part in a lab
-  std::optional<transport::Settings> lab;  ///< the graph's blocks run on the hosts that it names
-  bool own_graph = false;                  ///< nobody wrote the graph file: what is wrong with it is said without places
+  std::vector<std::string> part_command;          ///< of this machine's own part in a lab
+  std::optional<transport::Settings> lab;         ///< the graph's blocks run on the hosts that it names
+  std::vector<phases::PastChanges> past_changes;  ///< made by hand in the run that is repeated
+  std::optional<int> live;                        ///< port of the live page, 0: any
+  bool own_graph = false;                         ///< nobody wrote the graph file: what is wrong with it is said without places
 };
 
 struct RanGraph {

@@ -186,16 +186,26 @@ std::string band_caption(const Response& response) {
   return "The record does not tell its degrees of freedom: no confidence region can be drawn.";
 }
 
+void add_bode_plots(Page& page, const Response& response) {
+  add_main_figures(page, response);
+  if (response.outputs * response.inputs > kMostPairs)
+    page.note(fmt::format("Of {} pairs of output and input {} are drawn; all stand in result.json.",
+                          response.outputs * response.inputs, kMostPairs));
+  for (const auto& chart : bode_charts(response, nullptr)) page.figure(chart, band_caption(response));
+}
+
 }  // namespace
+
+bool add_bode_plots(Page& page, const Record& record) {
+  const auto response = read_response(record);
+  if (response) add_bode_plots(page, *response);
+  return response.has_value();
+}
 
 bool add_frequency_response(Page& page, const Record& record) {
   const auto response = read_response(record);
   if (!response) return false;
-  add_main_figures(page, *response);
-  if (response->outputs * response->inputs > kMostPairs)
-    page.note(fmt::format("Of {} pairs of output and input {} are drawn; all stand in result.json.",
-                          response->outputs * response->inputs, kMostPairs));
-  for (const auto& chart : bode_charts(*response, nullptr)) page.figure(chart, band_caption(*response));
+  add_bode_plots(page, *response);
   if (response->of_pairs("variance") != nullptr) {
     page.heading("How sure it is");
     page.grid(uncertainty_charts(*response),

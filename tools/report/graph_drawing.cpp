@@ -13,20 +13,23 @@ namespace bodeflow::tools::report {
 namespace {
 
 constexpr double kBoxHeight = 44.0;
+constexpr double kNoteHeight = 16.0;  ///< of the third line of a box
+constexpr double kNoteWidth = 104.0;
 constexpr double kMargin = 10.0;
 constexpr double kLoopGap = 14.0;  ///< between the ways that lead back beside the boxes
 constexpr double kArrow = 8.0;
 
-double box_width(const graph::Block& block) {
-  return std::max({text_width(block.name, 12.5), text_width(block.type->id, 11.0), 56.0}) + 18.0;
+double box_width(const graph::Block& block, bool notes) {
+  return std::max({text_width(block.name, 12.5), text_width(block.type->id, 11.0), notes ? kNoteWidth : 56.0}) + 18.0;
 }
 
 /// Drawn in two directions: `along` the layers (to the right, or down) and `across` them.
 class PhaseDrawing {
  public:
-  PhaseDrawing(const graph::Phase& phase, std::vector<LayoutEdge> edges, bool down) : phase_(phase), down_(down) {
+  PhaseDrawing(const graph::Phase& phase, std::vector<LayoutEdge> edges, bool down, bool notes)
+      : phase_(phase), down_(down), notes_(notes), height_(notes ? kBoxHeight + kNoteHeight : kBoxHeight) {
     std::vector<double> sizes;
-    for (const auto& block : phase.blocks) sizes.push_back(down ? box_width(block) : kBoxHeight);
+    for (const auto& block : phase.blocks) sizes.push_back(down ? box_width(block, notes) : height_);
     layout_ = layout_graph(sizes, std::move(edges), down ? 14.0 : 18.0);
     lengths_.assign(static_cast<std::size_t>(layout_.layers), 0.0);
     for (std::size_t b = 0; b < phase.blocks.size(); ++b) {
@@ -59,7 +62,7 @@ class PhaseDrawing {
   }
 
  private:
-  double length_of_box(std::size_t b) const { return down_ ? kBoxHeight : box_width(phase_.blocks[b]); }
+  double length_of_box(std::size_t b) const { return down_ ? height_ : box_width(phase_.blocks[b], notes_); }
   std::size_t layer(int node) const { return static_cast<std::size_t>(layout_.nodes[static_cast<std::size_t>(node)].layer); }
   double start(int node) const { return starts_[layer(node)]; }
   double end(int box) const { return start(box) + length_of_box(static_cast<std::size_t>(box)); }
@@ -106,20 +109,22 @@ class PhaseDrawing {
   void draw_box(Markup& body, std::size_t b) const {
     const auto& block = phase_.blocks[b];
     const int node = static_cast<int>(b);
-    const double width = box_width(block);
-    const double x = down_ ? middle(node) : start(node) + 0.5 * width, y = down_ ? start(node) + 0.5 * kBoxHeight : middle(node);
-    body.single("rect", {{"x", x - 0.5 * width},
-                         {"y", y - 0.5 * kBoxHeight},
-                         {"width", width},
-                         {"height", kBoxHeight},
-                         {"rx", 6.0},
-                         {"class", "box"}});
+    const double width = box_width(block, notes_);
+    const double x = down_ ? middle(node) : start(node) + 0.5 * width, top = (down_ ? start(node) : middle(node) - 0.5 * height_);
+    const double y = top + 0.5 * kBoxHeight;
+    body.single("rect",
+                {{"x", x - 0.5 * width}, {"y", top}, {"width", width}, {"height", height_}, {"rx", 6.0}, {"class", "box"}});
     draw_text(body, x, y - 3.0, block.name, Anchor::middle, "b");
     draw_text(body, x, y + 13.0, block.type->id, Anchor::middle, "q");
+    if (!notes_) return;
+    body.element("text",
+                 {{"x", x}, {"y", y + 29.0}, {"class", "t"}, {"text-anchor", "middle"}, {"data-block", std::to_string(b)}}, "");
   }
 
   const graph::Phase& phase_;
   bool down_;
+  bool notes_;
+  double height_;  ///< of a box
   GraphLayout layout_;
   std::vector<double> starts_;   ///< of each layer, along
   std::vector<double> lengths_;  ///< of its longest box
@@ -128,7 +133,7 @@ class PhaseDrawing {
 
 }  // namespace
 
-std::optional<Picture> draw_phase(const graph::Phase& phase, double width) {
+std::optional<Picture> draw_phase(const graph::Phase& phase, double width, bool notes) {
   if (phase.blocks.empty() || phase.blocks.size() > kMostBlocks) return {};
   std::vector<LayoutEdge> edges;
   std::vector<bool> records;
@@ -140,8 +145,8 @@ std::optional<Picture> draw_phase(const graph::Phase& phase, double width) {
   };
   for (const auto& edge : phase.streams) add(edge.from.block, edge.to.block, false);
   for (const auto& edge : phase.messages) add(edge.from.block, edge.to.block, true);
-  Picture picture = PhaseDrawing(phase, edges, false).draw(records);
-  if (picture.width > width) picture = PhaseDrawing(phase, edges, true).draw(records);
+  Picture picture = PhaseDrawing(phase, edges, false, notes).draw(records);
+  if (picture.width > width) picture = PhaseDrawing(phase, edges, true, notes).draw(records);
   if (!phase.name.empty()) picture.title += " of phase " + phase.name;
   picture.description =
       fmt::format("{} blocks with {} wires; streams are solid, records dashed.", phase.blocks.size(), edges.size());

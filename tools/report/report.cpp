@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <span>
 
@@ -18,51 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kQuickBytes = 64U << 20U;
-
-std::string kind_of(const std::string& type) {
-  static const std::map<std::string, std::string> kKinds{{"frequency_response", "frequency response"},
-                                                         {"spectral_levels", "levels at all lines"},
-                                                         {"spectral_matrix", "spectral matrix"},
-                                                         {"model", "model"},
-                                                         {"monte_carlo", "Monte Carlo"},
-                                                         {"controller", "controller"},
-                                                         {"adaptive_run", "adaptive run"},
-                                                         {"trace", "residual trace"},
-                                                         {"reveal", "verdict and truth"},
-                                                         {"sweep", "sweep"},
-                                                         {"comparison", "comparison of models"},
-                                                         {"change", "change of a response"},
-                                                         {"order_scan", "order scan"},
-                                                         {"noise_variances", "noise variances"},
-                                                         {"whiteness", "whiteness of the residual"},
-                                                         {"residual", "residual"},
-                                                         {"delay_estimate", "delay"}};
-  const auto found = kKinds.find(type);
-  return found == kKinds.end() ? type : found->second;
-}
-
-bool add_by_type(Page& page, const Record& record, std::span<const Response> responses) {
-  if (record.type == "frequency_response") return add_frequency_response(page, record);
-  if (record.type == "spectral_levels") return add_spectral_levels(page, record);
-  if (record.type == "spectral_matrix") return add_spectral_matrix(page, record);
-  if (record.type == "model") return add_model(page, record, responses);
-  if (record.type == "parameters") return add_derived_parameters(page, record);
-  if (record.type == "monte_carlo") return add_monte_carlo(page, record);
-  if (record.type == "noise_variances") return add_noise_variances(page, record);
-  if (record.type == "comparison") return add_comparison(page, record);
-  if (record.type == "change") return add_change(page, record);
-  if (record.type == "order_scan") return add_order_scan(page, record);
-  if (record.type == "whiteness") return add_whiteness(page, record);
-  if (record.type == "residual") return add_residual(page, record) || add_fitted_lines(page, record);
-  if (record.type == "controller") return add_controller(page, record);
-  if (record.type == "adaptive_run") return add_adaptive_run(page, record);
-  if (record.type == "filter") return add_filter(page, record);
-  if (record.type == "trace") return add_trace(page, record);
-  if (record.type == "reveal") return add_reveal(page, record);
-  if (record.type == "sweep") return add_sweep(page, record);
-  if (record.type == "delay_estimate") return add_delay_estimate(page, record), true;
-  return false;
-}
 
 /// Whether a record begins with what it found, in a sentence: what warns about it follows that.
 bool says_first(const Record& record) { return record.type == "trace" && !record.text("verdict").empty(); }
@@ -105,7 +59,7 @@ void add_records(Page& page, const RunData& run) {
     page.open_section(record.key, kind_of(record.type));
     for (const auto& warning : record.texts("warnings"))
       if (told.insert(warning).second && !says_first(record)) page.note(warning);
-    if (!add_by_type(page, record, {responses.data(), known_to(run, n, before)})) add_any(page, record);
+    add_record(page, record, {responses.data(), known_to(run, n, before)});
     page.close_section();
   }
   if (run.records.empty()) {

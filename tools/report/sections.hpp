@@ -11,6 +11,8 @@
 namespace bodeflow::tools::report {
 
 bool add_frequency_response(Page& page, const Record& record);
+/// Of a frequency response its main figures and Bode plots alone.
+bool add_bode_plots(Page& page, const Record& record);
 bool add_spectral_levels(Page& page, const Record& record);
 bool add_spectral_matrix(Page& page, const Record& record);
 /// `responses`: all of the run, for the comparison with data.
@@ -38,6 +40,12 @@ bool add_filter(Page& page, const Record& record);
 bool add_trace(Page& page, const Record& record);
 bool add_reveal(Page& page, const Record& record);
 bool add_sweep(Page& page, const Record& record);
+
+/// What a type of records is called.
+std::string kind_of(const std::string& type);
+
+/// Any record, by its type; `responses`: those that a model may be compared with.
+void add_record(Page& page, const Record& record, std::span<const Response> responses);
 
 /// The responses of a sweep's runs over each other, where its records were frequency responses.
 void add_sweep_charts(Page& page, const Record& record, std::size_t runs);

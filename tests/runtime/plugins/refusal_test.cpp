@@ -20,8 +20,6 @@ std::string reason(const std::filesystem::path& file) {
   return registry.plugins()[0].refused;
 }
 
-bool begins_with(const std::string& text, const std::string& beginning) { return text.rfind(beginning, 0) == 0; }
-
 }  // namespace
 
 TEST_CASE("a file that is no plugin is refused before any code of it runs") {
@@ -37,7 +35,7 @@ TEST_CASE("a file that is no plugin is refused before any code of it runs") {
 TEST_CASE("a plugin of another ABI is refused before its constructor could crash") {
   CHECK(reason(fixture("wrong_abi")) == "needs plugin ABI 2.0, this host has 1.0: update bodeflow");
   CHECK(reason(fixture("newer_abi")) == "needs plugin ABI 1.1, this host has 1.0: update bodeflow");
-  CHECK(reason(fixture("two_minds_on_abi")) == "needs plugin ABI 3.3, this host has 1.0: update bodeflow");
+  CHECK(reason(fixture("two_minds_on_abi")) == "needs plugin ABI 3.0, this host has 1.0: update bodeflow");
 }
 
 TEST_CASE("a plugin without a usable symbol is refused") {

@@ -28,7 +28,7 @@ struct RunCommand {
   LabOptions lab;
 };
 
-constexpr const char* kFreePort = "free";
+constexpr const char* kFreePort = "true";  ///< what a flag without a value is
 
 /// The port of --live, 0 for any that is free; -1: no port.
 int live_port(const std::string& text) {
@@ -131,8 +131,9 @@ void add_run(CLI::App& app, Session& session) {
   command->add_option("--host", options->host, "Serve one run as this host of the graph, by hand, in place of an agent")
       ->type_name("NAME");
   command->add_flag("--here", options->here, "All blocks in this process, whatever hosts the graph names");
-  command->add_flag(fmt::format("--live{{{}}}", kFreePort), options->live,
-                    "Show the run in a browser on this machine, where live parameters can be changed: --live, or --live=PORT");
+  command->add_flag(
+      "--live", options->live,
+      "Show the run in a browser on this machine, where live parameters can be changed; --live=PORT for a port of your own");
   options->lab.add_to(*command);
   options->graph.add_json_to(*command);
   command->callback([&session, options] { session.action = [&session, options] { return run(session, *options); }; });

@@ -9,7 +9,9 @@ const kEvery = 500;                                   // ms between two looks
 const token = location.hash.slice(1);
 const by = id => document.getElementById(id);
 const shown = new Map();                              // records: key -> {version, body}
-let generation = -1, before = null, title = document.title;
+const title = document.title;
+let generation = -1;                                  // of what is drawn
+let history = [];                                     // the looks of the last seconds: {generation, wall_s, firings}
 
 function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
@@ -63,11 +65,16 @@ function head(state) {
   facts(by('figures'), figures);
 }
 
-function measured(state, block) {                     // firings a second since the last look
-  const now = state.blocks[block];
-  if (!before || now.firings === undefined || before.generation !== state.generation) return null;
-  const seconds = state.wall_s - before.wall_s;
-  return seconds > 0 ? (now.firings - before.blocks[block].firings) / seconds : null;
+function measured(state, block) {                     // firings a second, over about three seconds
+  const then = history[0];
+  if (!then || then.generation !== state.generation || state.wall_s - then.wall_s < 0.4) return null;
+  const rate = (state.blocks[block].firings - then.firings[block]) / (state.wall_s - then.wall_s);
+  return isFinite(rate) ? rate : null;
+}
+function remember(state) {
+  if (history.length > 0 && history[0].generation !== state.generation) history = [];
+  if (state.blocks) history.push({generation: state.generation, wall_s: state.wall_s, firings: state.blocks.map(b => b.firings)});
+  while (history.length > 1 && state.wall_s - history[1].wall_s > 3) history.shift();
 }
 
 async function graph(state) {
@@ -79,7 +86,7 @@ async function graph(state) {
   state.blocks.forEach((block, index) => {
     const notes = [], now = state.runs ? measured(state, index) : null;
     if (block.rate_hz !== undefined) notes.push(si(now === null ? block.rate_hz : now, 'Hz', 3));
-    if (block.records !== undefined) notes.push(block.records + ' rec.');
+    if (block.records > 0) notes.push(block.records + ' rec.');
     if (block.waiting > 0) notes.push(block.waiting + ' wait');
     for (const place of document.querySelectorAll('[data-block="' + index + '"]')) place.textContent = notes.join(' · ');
   });
@@ -156,7 +163,7 @@ async function records(state) {
 function wires(state) {
   const rows = state.streams.map(s => {
     const rate = s.block === undefined || !state.runs ? null : measured(state, s.block);
-    const queue = s.ring ? [element('meter', {min: 0, max: s.ring.slots, value: s.ring.filled}), ' ' + s.ring.filled + ' of ' + s.ring.slots + ' chunks'] : [];
+    const queue = s.ring ? [element('meter', {min: 0, max: s.ring.slots, value: s.ring.filled}), ' ' + s.ring.filled + ' of ' + s.ring.slots + ' chunks'] : s.block === undefined ? [] : ['same thread'];
     return element('tr', {}, element('td', {}, s.from), element('td', {}, s.to),
       element('td', {class: 'n'}, si(s.rate_hz, 'Hz') + (s.channels > 1 ? ' × ' + s.channels : '')),
       element('td', {class: 'n'}, rate === null ? '–' : si(rate * s.samples, 'Hz')), element('td', {}, ...queue));
@@ -199,7 +206,7 @@ async function draw(state) {
   changes(state);
   log(state);
   await records(state);
-  before = state.blocks ? state : null;
+  remember(state);
 }
 
 async function look() {

@@ -3,7 +3,11 @@
 namespace bodeflow::dds {
 
 void PublishBlock::describe(Describe& d) {
-  d.id("dds.publish").summary("Publishes a stream on a topic of the network (Fast DDS).").role("sink").cost_ns(50);
+  d.id("dds.publish")
+      .summary("Publishes a stream on a topic of the network (Fast DDS).")
+      .role("sink")
+      .role("network")
+      .cost_ns(50);
   d.doc(
       "Each call's samples are one message, the struct bodeflow::Message of bodeflow.idl: any DDS program can read them. Nothing "
       "is lost between readers that are there; the slowest of them holds the graph back. `latest: true` never waits and gives "

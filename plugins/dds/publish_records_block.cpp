@@ -10,7 +10,7 @@ constexpr std::int64_t kTicks = 1'000'000'000;  // a second: times of records tr
 }  // namespace
 
 void PublishRecordsBlock::describe(Describe& d) {
-  d.id("dds.publish_records").summary("Publishes records on a topic of the network (Fast DDS).").role("sink");
+  d.id("dds.publish_records").summary("Publishes records on a topic of the network (Fast DDS).").role("sink").role("network");
   d.doc(
       "Each record is one message, the struct bodeflow::Message of bodeflow.idl, whose payload is the record's bytes. Nothing is "
       "lost between readers that are there. With `keep_last: true` one that joins later gets the last record, and each record "

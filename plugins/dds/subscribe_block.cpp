@@ -6,7 +6,11 @@
 namespace bodeflow::dds {
 
 void SubscribeBlock::describe(Describe& d) {
-  d.id("dds.subscribe").summary("Takes a stream from a topic of the network (Fast DDS).").role("source").cost_ns(50);
+  d.id("dds.subscribe")
+      .summary("Takes a stream from a topic of the network (Fast DDS).")
+      .role("source")
+      .role("network")
+      .cost_ns(50);
   d.doc(
       "What the topic carries must be known before it comes, so rate and channels are stated here, and a message that says "
       "otherwise ends the run. The stream begins with the first message that comes and ends with the one that ends the topic. "

@@ -3,7 +3,7 @@
 namespace bodeflow::dds {
 
 void SubscribeRecordsBlock::describe(Describe& d) {
-  d.id("dds.subscribe_records").summary("Takes records from a topic of the network (Fast DDS).").role("source");
+  d.id("dds.subscribe_records").summary("Takes records from a topic of the network (Fast DDS).").role("source").role("network");
   d.doc(
       "With a stream on `pace` a record is sent at the sample at which it is found, so that a second run gives other positions. "
       "At "

@@ -71,7 +71,7 @@ std::span<const std::byte> StreamQueue::take(bool all) {
   const std::uint64_t waiting = waiting_rows();
   if (waiting == 0 || (!all && waiting < worth_)) return {};
   const std::uint64_t at = taken_ % capacity_;
-  lent_ = std::min(waiting, capacity_ - at);
+  lent_ = std::min({waiting, capacity_ - at, capacity_ / 2});
   return {ring_.get() + at * row_bytes_, lent_ * row_bytes_};
 }
 

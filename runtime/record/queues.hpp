@@ -31,8 +31,8 @@ class StreamQueue {
       if (copied == 0) wait_for_room(refusing);
     }
   }
-  /// Takes what waits, up to the end of the ring, if it is worth a write, or in any case; the rows stay valid until the next
-  /// call, which lets them go. Empty: nothing.
+  /// Takes what waits if it is worth a write, or in any case: up to the end of the ring and at most half of it, so that three
+  /// calls take all. The rows stay valid until the next call, which lets them go. Empty: nothing.
   std::span<const std::byte> take(bool all);
   /// Counts rows that were written into the hash.
   void written(std::span<const std::byte> rows) { hash_.update(rows.data(), rows.size()); }

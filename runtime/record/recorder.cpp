@@ -157,7 +157,7 @@ void Recorder::write_until_stopped() {
 
 void Recorder::drain(bool all) {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
-    for (int piece = 0; piece < 2; ++piece) {  // to the end of the ring, and from its begin
+    for (int piece = 0; piece < 3; ++piece) {
       const auto rows = streams_[i]->take(all);
       if (rows.empty() || refusing_) break;
       if (const auto done = data_.append_samples(i, rows.data(), streams_[i]->rows_in(rows)); !done)

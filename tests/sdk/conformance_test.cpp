@@ -52,10 +52,19 @@ TEST_CASE("a plugin that keeps the contract passes every check") {
   CHECK(std::any_of(report.checks.begin(), report.checks.end(), [](const Check& c) { return c.setting == "@element = c64"; }));
 }
 
-TEST_CASE("a block that can't be configured is skipped with the reason") {
+TEST_CASE("a block that runs in none of its settings has not passed") {
   const Report report = check_plugin(BODEFLOW_GOOD_PLUGIN, only("good.mean"));
-  CHECK(finding(report, "can be set up") == "skipped: parameter 'length' is required: give a setting");
-  CHECK(report.count(Status::fail) == 0);
+  CHECK(finding(report, "can be set up") == "skipped: parameter 'length' is required");
+  CHECK(finding(report, "runs in some setting") ==
+        "it refused all of them: parameter 'length' is required; give one in a settings file");
+}
+
+TEST_CASE("a block that the plugin does not have is not passed over") {
+  const std::string there = "the plugin has good.";
+  CHECK(finding(check_plugin(BODEFLOW_GOOD_PLUGIN, only("good.maen")), "is in the plugin").rfind(there, 0) == 0);
+  Options options = only("good.mean");
+  options.settings = *parse_settings("good.mean: length = 10\ngood.maen: length = 333\n");
+  CHECK(finding(check_plugin(BODEFLOW_GOOD_PLUGIN, options), "is in the plugin").rfind(there, 0) == 0);
 }
 
 TEST_CASE("a setting that does not fit is a failure of the setting") {

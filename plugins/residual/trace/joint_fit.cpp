@@ -1,9 +1,12 @@
 #include "trace/joint_fit.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <bodeflow/numerics/levenberg_marquardt.hpp>
 #include <cmath>
 #include <numeric>
+
+#include "model/plant_matrices.hpp"
 
 namespace bodeflow::residual {
 namespace {
@@ -20,6 +23,15 @@ Eigen::VectorXd widening(const Fit& f) {
   for (Eigen::Index i = 0; i < noise.size(); ++i)
     if (noise[i] > 0.0) wider[i] = std::sqrt(std::max(misfit[i] / noise[i], 1.0));
   return wider;
+}
+
+/// Whether the base model has a pole at 0; told without what records state.
+bool integrates(const JointModel& model, const Eigen::VectorXd& values) {
+  if (!model.base->has_state_space() || !model.base->known().empty()) return false;
+  const auto plant = plant_matrices(*model.base, values.data(), {});
+  if (!plant || plant->states() == 0) return false;
+  const Eigen::VectorXd sizes = plant->A.eigenvalues().cwiseAbs();
+  return sizes.minCoeff() <= 1e-12 * sizes.maxCoeff();
 }
 
 }  // namespace
@@ -111,7 +123,14 @@ Expected<Fit> fit(const JointModel& model, const Measurements& records, const st
     if (order.size() > 1) approach(problem, kSteps, 1e-4 * a.cost, true, a);
     if (a.started && (!best.started || a.cost < best.cost)) best = std::move(a);
   }
-  if (!best.started) return refused("the model can't be computed at any of the parameters to start from");
+  if (!best.started) {
+    const bool drifts = !starts.empty() && integrates(model, starts.front());
+    return refused(std::string("the model can't be computed at any of the parameters to start from") +
+                   (drifts
+                        ? ": it has a state that integrates (a pole at 0), which has no steady state over a period; leave that "
+                          "state out where no effect needs it"
+                        : ""));
+  }
   problem.bound_base(points[order.front()]);
   return polish(problem, best.at);
 }

@@ -10,6 +10,9 @@
 namespace bodeflow::testing {
 namespace {
 
+constexpr const char* kSoundDescriptor = "has a sound descriptor";
+constexpr const char* kSetUp = "can be set up";
+
 std::string joined(const std::vector<std::string>& texts) {
   std::string all;
   for (const std::string& t : texts) all += (all.empty() ? "" : "; ") + t;
@@ -45,7 +48,7 @@ Case make_case(const bf_factory& factory, const Setting& setting) {
   for (std::uint32_t i = 0; i < c.block->parameter_count; ++i) {
     const bf_parameter_descriptor& p = *c.block->parameters[i];
     if ((p.flags & BF_PARAMETER_REQUIRED) != 0 && !c.values[i].given) {
-      throw Skip{std::string("parameter '") + p.name + "' is required: give a setting"};
+      throw Skip{std::string("parameter '") + p.name + "' is required"};
     }
   }
   return c;
@@ -76,10 +79,13 @@ class Suite {
       }
       if (!problems.empty()) fail(joined(problems));
     });
+    know_all_names(plugin);
     for (std::uint32_t i = 0; i < plugin.count; ++i) {
       const bf_factory& f = *plugin.factories[i];
       if (!options_.block.empty() && options_.block != f.id) continue;
+      const std::size_t before = report_.checks.size();
       if (std::string_view(f.kind) == "block") block(f);
+      if (std::string_view(f.kind) == "block") demand_a_test(f, before);
       if (std::string_view(f.kind) == "effect") effect(f);
       if (std::string_view(f.kind) == "base_model") base_model(f);
     }
@@ -91,6 +97,37 @@ class Suite {
     return note(id, setting, name, judge(work, options_.isolate, options_.timeout_s));
   }
 
+  /// What the options name is there: a slip of the pen would test nothing, and pass.
+  void know_all_names(const LoadedPlugin& plugin) {
+    std::vector<std::string> wanted;
+    if (!options_.block.empty()) wanted.push_back(options_.block);
+    for (const auto& [id, settings] : options_.settings) wanted.push_back(id);
+    std::string there;
+    for (std::uint32_t i = 0; i < plugin.count; ++i) there += (i == 0 ? "" : ", ") + std::string(plugin.factories[i]->id);
+    for (const std::string& id : wanted) {
+      const auto is = [&](const bf_factory* f) { return id == f->id; };
+      if (std::any_of(plugin.factories, plugin.factories + plugin.count, is)) continue;
+      note(id, "", "is in the plugin", {Status::fail, "the plugin has " + there});
+    }
+  }
+
+  /// A block whose every setting refuses to run was not tested: no pass. A device or network may not be there.
+  void demand_a_test(const bf_factory& factory, std::size_t first) {
+    const auto* descriptor = static_cast<const bf_block_descriptor*>(factory.descriptor);
+    if (descriptor == nullptr) return;
+    for (const char* outside : {"device", "network"})
+      if (std::string(descriptor->roles).find(outside) != std::string::npos) return;
+    std::string reason;
+    for (std::size_t i = first; i < report_.checks.size(); ++i) {
+      const Check& c = report_.checks[i];
+      if (c.status == Status::fail) return;
+      if (c.status == Status::pass && c.name != kSoundDescriptor && c.name != kSetUp) return;
+      if (c.status == Status::skip && reason.empty()) reason = c.reason;
+    }
+    note(factory.id, "", "runs in some setting",
+         {Status::fail, "it refused all of them: " + reason + "; give one in a settings file"});
+  }
+
   bool note(const std::string& id, const std::string& setting, const std::string& name, Verdict verdict) {
     if (verdict.status == Status::skip && verdict.reason.empty()) return true;
     report_.checks.push_back({id, setting, name, verdict.status, std::move(verdict.reason)});
@@ -98,7 +135,7 @@ class Suite {
   }
 
   void block(const bf_factory& factory) {
-    const bool sound = check(factory.id, "", "has a sound descriptor", [&](const Step&) {
+    const bool sound = check(factory.id, "", kSoundDescriptor, [&](const Step&) {
       const auto problems = descriptor_problems(factory);
       if (!problems.empty()) fail(joined(problems));
     });
@@ -113,7 +150,7 @@ class Suite {
   }
 
   void effect(const bf_factory& factory) {
-    const bool sound = check(factory.id, "", "has a sound descriptor", [&](const Step&) {
+    const bool sound = check(factory.id, "", kSoundDescriptor, [&](const Step&) {
       const auto problems = effect_problems(factory);
       if (!problems.empty()) fail(joined(problems));
     });
@@ -122,7 +159,7 @@ class Suite {
   }
 
   void base_model(const bf_factory& factory) {
-    const bool sound = check(factory.id, "", "has a sound descriptor", [&](const Step&) {
+    const bool sound = check(factory.id, "", kSoundDescriptor, [&](const Step&) {
       const auto problems = descriptor_problems(factory);
       if (!problems.empty()) fail(joined(problems));
     });
@@ -134,7 +171,7 @@ class Suite {
     for (const Setting& setting : settings) {
       const std::string text = text_of(setting);
       Case c;
-      if (!check(factory.id, text, "can be set up", [&](const Step&) { make_case(factory, setting); })) continue;
+      if (!check(factory.id, text, kSetUp, [&](const Step&) { make_case(factory, setting); })) continue;
       for (const PartCheck& one : base_checks(factory, make_case(factory, setting).values))
         check(factory.id, text, one.name, one.run);
     }
@@ -173,7 +210,7 @@ class Suite {
   void test(const bf_factory& factory, const Setting& setting, bool with_parameters) {
     const std::string text = text_of(setting);
     Case c;
-    const bool usable = check(factory.id, text, "can be set up", [&](const Step& step) {
+    const bool usable = check(factory.id, text, kSetUp, [&](const Step& step) {
       c = make_case(factory, setting);
       set_up(c, step);
     });
@@ -218,7 +255,7 @@ class Suite {
     Case open = c;
     open.feed.optional_connected = false;
     const std::string label = text + (text.empty() ? "" : ", ") + "optional inputs unconnected";
-    if (!check(id, label, "can be set up", [&](const Step& step) { set_up(open, step); })) return;
+    if (!check(id, label, kSetUp, [&](const Step& step) { set_up(open, step); })) return;
     for (const BlockCheck& one : case_checks()) run(id, label, one, open);
   }
 

@@ -179,10 +179,12 @@ static int32_t ramp_process(void* self, bf_process* p) {
   return BF_OK;
 }
 static int32_t ramp_reset(void* self) { return ((block*)self)->at = 0, BF_OK; }
+static int32_t ramp_activate(void* self, const bf_activation* a) { return (void)a, ramp_reset(self); }
 static int32_t ramp_create(const bf_factory* factory, const bf_host* host, void* made) {
   (void)factory;
   bf_block c = plain_block(host);
-  c.configure = ramp_configure, c.resolve = ramp_resolve, c.process = ramp_process, c.reset = ramp_reset;
+  c.configure = ramp_configure, c.resolve = ramp_resolve, c.process = ramp_process, c.reset = ramp_reset,
+  c.activate = ramp_activate;
   return give(host, made, c);
 }
 

@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "bodeflow " BODEFLOW_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
-  app.add_option("--path", session.plugin_path, "A folder with plugins, before the usual ones")->check(CLI::ExistingPath)
+  app.add_option("--path", session.plugin_path, "A folder with plugins, before the usual ones")
+      ->check(CLI::ExistingPath)
       ->type_name("DIR")
       ->allow_extra_args(false);
   add_run(app, session);

@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include "plugins/crash.hpp"
+
 namespace bodeflow::execute {
 namespace {
 
@@ -15,6 +17,20 @@ using Seconds = std::chrono::duration<double>;
 constexpr double kPoll_s = 0.1;
 /// What threads that only wait get to leave, once the run was ended.
 constexpr double kGrace_s = 1.0;
+
+/// Where a thread of a run stands, for a word about its crash.
+struct Post {
+  const Run* run;
+  const Lane* lane;
+
+  static AtWork::Block block(const void* self) {
+    const auto& post = *static_cast<const Post*>(self);
+    const int index = post.lane->doing().block;
+    if (index < 0) return {};
+    const graph::Block& block = post.run->phase->blocks[static_cast<std::size_t>(index)];
+    return {block.name.c_str(), block.type->id.c_str()};
+  }
+};
 
 void guarded(Run& run, const std::function<void()>& body) noexcept {
   try {
@@ -31,6 +47,8 @@ void guarded(Run& run, const std::function<void()>& body) noexcept {
 std::thread::native_handle_type Crew::start(Lane& lane, std::string name, std::function<void()> body) {
   members_.reserve(members_.size() + 1);
   std::thread thread([run = run_, state = state_, &lane, body = std::move(body)] {
+    const Post post{run.get(), &lane};
+    const AtWork here(Post::block, &post);
     guarded(*run, body);
     const std::lock_guard lock(state->mutex);
     lane.over();

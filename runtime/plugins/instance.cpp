@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "plugins/crash.hpp"
 #include "plugins/host.hpp"
 #include "plugins/stream_facts.hpp"
 
@@ -19,10 +20,16 @@ struct Instance::State {
   Host host;
   bf_block block{};
 
+  AtWork at_work() const {
+    return AtWork([](const void* state) { return static_cast<const State*>(state)->known(); }, this);
+  }
+  AtWork::Block known() const { return {block_name.c_str(), type == nullptr ? "" : type->id.c_str()}; }
+
   /// Calls a function of the block; its words where it failed.
   template <class Call>
   Result call(const char* function, Call&& call) {
     host.clear_error();
+    const AtWork here = at_work();
     try {
       if (call() == BF_OK) return {};
     } catch (...) {
@@ -68,11 +75,12 @@ tl::expected<std::unique_ptr<Instance>, std::string> Instance::make(Registry& re
   std::unique_ptr<Instance> instance(new Instance);
   instance->state_ = std::make_unique<State>(std::move(name), std::move(services), registry.parts());
   State& state = *instance->state_;
+  state.type = registry.find(id);
+  const AtWork here = state.at_work();
   auto block = registry.create(id, state.host.c());
   if (!block) return tl::unexpected(block.error());
   state.block = *block;
   state.keep = registry.keep_alive();
-  state.type = registry.find(id);
   if (const std::string why = problem_of(state.block); !why.empty()) {
     return tl::unexpected(fmt::format("plugin '{}' ({}): {}", registry.plugin_of(id)->name, registry.plugin_of(id)->file, why));
   }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "console/json_output.hpp"
+#include "plugins/crash.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -28,6 +29,7 @@ Registry Session::open_registry() const {
   for (auto& folder : default_plugin_path()) options.path.push_back(std::move(folder));
   options.cache = cache_file();
   options.probe_command = executable;
+  tell_crashes();
   return Registry(std::move(options));
 }
 

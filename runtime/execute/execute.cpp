@@ -51,10 +51,11 @@ bool run_threads(const std::shared_ptr<Run>& run, Crew& crew) {
     crew.start(worker->lane(), fmt::format("the thread of block '{}'", run->name(worker->block().index)),
                [w = worker.get()] { w->run(); });
   const std::size_t first = crew.size();
-  Scheduling scheduling(run->phase->run, run->options.warn);
+  Scheduling scheduling(run->phase->run, [&run](const std::string& text) { run->warn(text); });
   for (const auto& partition : run->partitions)
     scheduling.apply(
         crew.start(partition->lane, fmt::format("thread {}", partition->index + 1), [p = partition.get()] { p->work(); }));
+  run->open_gate();
   if (!crew.watch(first)) return false;
   if (!run->control.stopping()) crew.start(run->finisher, "the last thread", [r = run.get()] { finish_run(*r); });
   return crew.watch();
@@ -81,6 +82,7 @@ Outcome outcome_of(const Run& run, bool hung, const std::string& hang) {
   outcome.wall_s = std::chrono::duration<double>(Clock::now() - run.started).count();
   outcome.overruns = run.overruns.load();
   outcome.skipped = static_cast<std::uint64_t>(run.skipped.load());
+  outcome.not_permitted = run.not_permitted;
   outcome.hung = hung;
   outcome.time_s = progress_of(run).time_s;
   outcome.metrics.resize(run.blocks.size());
@@ -126,8 +128,11 @@ Outcome execute_all(const std::shared_ptr<Run>& run, const std::vector<std::uniq
   std::vector<int> hanging;
   std::string hang;
   if (activated == instances.size()) {
-    const LockedMemory locked(run->phase->run, run->options.warn);
+    const Warn warn = [&run](const std::string& text) { run->warn(text); };
+    const LockedMemory locked(run->phase->run, warn);
+    const AwakeCores awake(run->phase->run, warn);
     run->started = Clock::now();
+    run->control.watch(run->gate);
     const Watched watched(*run);
     const Reporter reporter(*run);
     Crew crew(run);

@@ -79,6 +79,7 @@ struct Outcome {
   std::uint64_t overruns = 0;  ///< real-time clock: chunks that began late, answers of asynchronous blocks that were waited for
   std::uint64_t skipped = 0;   ///< chunks of time that were left out: Overrun::skip
   Lateness lateness;           ///< realtime clock
+  std::vector<std::string> not_permitted;  ///< priority, locked memory, cores: what the run went on without, and how to permit it
   std::vector<BlockMetrics> metrics;
 };
 

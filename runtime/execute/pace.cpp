@@ -48,7 +48,8 @@ bool take_overrun(Run& run, const Chunk& chunk, std::int64_t skipped, nanosecond
 bool wait_for_time(PartitionRun& partition, const Chunk& chunk) {
   Run& run = *partition.run;
   const std::int64_t skipped = run.skipped.load(std::memory_order_relaxed);
-  const auto when = run.started + length_of(run, chunk.begin) + skipped * length_of(run, run.chunking.periods);
+  const Clock::time_point start{nanoseconds(run.clock_start.load(std::memory_order_relaxed))};
+  const auto when = start + length_of(run, chunk.begin) + skipped * length_of(run, run.chunking.periods);
   auto now = Clock::now();
   if (now > when && !take_overrun(run, chunk, skipped, now - when)) return false;
   while (!run.stop_wanted()) {

@@ -5,10 +5,13 @@
 #include <exception>
 
 #include "execute/pace.hpp"
+#include "execute/scheduling.hpp"
 
 namespace bodeflow::execute {
 
 void PartitionRun::work() {
+  if (run->paced()) wake_in_time();
+  if (!run->pass_gate()) return;
   Chunk chunk;
   while (!run->stop_wanted()) {
     chunk.begin = chunk.end;

@@ -7,6 +7,26 @@ namespace bodeflow::execute {
 Run::Run() = default;
 Run::~Run() = default;
 
+void Run::open_gate() {
+  open.store(true, std::memory_order_release);
+  gate.raise();
+}
+
+bool Run::pass_gate() {
+  while (!open.load(std::memory_order_acquire) && !control.stopping()) {
+    const std::uint32_t epoch = gate.epoch();
+    if (!open.load(std::memory_order_acquire) && !control.stopping()) gate.wait(epoch);
+  }
+  std::int64_t nobody = 0;
+  clock_start.compare_exchange_strong(nobody, std::chrono::steady_clock::now().time_since_epoch().count());
+  return !control.stopping();
+}
+
+void Run::warn(const std::string& text) {
+  not_permitted.push_back(text);
+  if (options.warn) options.warn(text);
+}
+
 bool Run::stop_wanted() {
   if (control.stopping()) return true;
   if (options.stop == nullptr || !options.stop->load(std::memory_order_relaxed)) return false;

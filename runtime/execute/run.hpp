@@ -54,6 +54,10 @@ struct Run {
   std::atomic<std::uint64_t> overruns{0};
   std::atomic<std::int64_t> skipped{0};  ///< chunks of time left out of the schedule
   std::chrono::steady_clock::time_point started;
+  std::vector<std::string> not_permitted;  ///< of the caller's thread
+  Signal gate;                             ///< compute threads wait here until each has its priority and cores
+  std::atomic<bool> open{false};
+  std::atomic<std::int64_t> clock_start{0};  ///< of a paced run, when the first thread began: nanoseconds of the steady clock
 
   Run();
   ~Run();
@@ -68,6 +72,12 @@ struct Run {
   Time end_time() const;
   /// The time when period `count` of the phase begins.
   Time time_of_period(std::int64_t count) const { return multiple_of(count, period); }
+  /// Lets the compute threads go.
+  void open_gate();
+  /// On a compute thread, before its first chunk: waits for the gate. False: the run is ending.
+  bool pass_gate();
+  /// Keeps and tells what the system did not permit. The caller's thread.
+  void warn(const std::string& text);
   /// Ends the run where the caller wishes it. True: it is ending.
   bool stop_wanted();
 };

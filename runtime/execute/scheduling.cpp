@@ -1,10 +1,13 @@
 #include "execute/scheduling.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -60,6 +63,24 @@ LockedMemory::LockedMemory(const graph::RunSettings& run, const Warn& warn) {
 LockedMemory::~LockedMemory() {
   if (locked_) munlockall();
 }
+
+AwakeCores::AwakeCores(const graph::RunSettings& run, const Warn& warn) {
+  if (!run.priority) return;
+  device_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+  const std::int32_t longest_us = 0;  // the kernel keeps to it until the file is closed
+  if (device_ >= 0 && write(device_, &longest_us, sizeof longest_us) == sizeof longest_us) return;
+  if (errno == ENOENT || !warn) return;  // without that file nothing is known to sleep
+  warn(fmt::format(
+      "priority: cores may sleep between chunks (/dev/cpu_dma_latency: {}): the run goes on without; to permit it, add "
+      "'KERNEL==\"cpu_dma_latency\", GROUP=\"realtime\", MODE=\"0660\"' to /etc/udev/rules.d/99-realtime.rules",
+      std::strerror(errno)));
+}
+
+AwakeCores::~AwakeCores() {
+  if (device_ >= 0) close(device_);
+}
+
+void wake_in_time() { prctl(PR_SET_TIMERSLACK, 1UL); }
 
 void Scheduling::say(bool& warned, const std::string& text) const {
   if (!warned && warn_) warn_(text);

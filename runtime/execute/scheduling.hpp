@@ -23,6 +23,22 @@ class LockedMemory {
   bool locked_ = false;
 };
 
+/// The cores of the machine, kept from sleeping while this lives: waking them takes up to some 100 us.
+class AwakeCores {
+ public:
+  /// Changes nothing without RunSettings::priority. What the system does not permit is told to `warn`.
+  AwakeCores(const graph::RunSettings& run, const Warn& warn);
+  ~AwakeCores();
+  AwakeCores(const AwakeCores&) = delete;
+  AwakeCores& operator=(const AwakeCores&) = delete;
+
+ private:
+  int device_ = -1;
+};
+
+/// Wakes the calling thread at its times: the kernel lets timers of threads without a real-time priority end 50 us late.
+void wake_in_time();
+
 /// Gives compute threads the priority and the cores of the run settings; says each of the two once where it is not permitted.
 class Scheduling {
  public:

@@ -102,7 +102,7 @@ class Launch {
     if (auto started = start(phase, repeat, initial); !started)
       return tl::unexpected(Ended{RunResult::Status::failed, "", started.error(), {}});
     auto ended = watch(phase);
-    keep_results(phase);
+    keep_results(phase, repeat);
     return ended;
   }
 
@@ -139,7 +139,7 @@ class Launch {
           hosts_.lose(*part);
           end_all({RunResult::Status::failed, "", heard.error(), {}});
         } else if (part->has_ended() && !part->ended().value("complete", false)) {
-          end_all(end_of(*part));
+          end_all(end_of(phase, *part));
         }
         any = any || runs(*part);
       }
@@ -152,11 +152,13 @@ class Launch {
     return {};
   }
 
-  Ended end_of(const HostPart& part) const {
+  static Ended end_of(const graph::Phase& phase, const HostPart& part) {
     Ended ended;
     const json& said = part.ended();
-    if (said.value("interrupted", false)) ended.status = RunResult::Status::interrupted;
     ended.block = said.value("block", "");
+    if (const int block = phase.block_index(ended.block); block >= 0)
+      ended.status = phases::failure_of(phase.blocks[static_cast<std::size_t>(block)]);
+    if (said.value("interrupted", false)) ended.status = RunResult::Status::interrupted;
     ended.reason = part.name().empty() ? said.value("reason", "") : fmt::format("{}: {}", part.title(), said.value("reason", ""));
     return ended;
   }
@@ -208,9 +210,10 @@ class Launch {
     options_.log(part.name(), link.value("connection", ""), BF_LOG_WARNING, text);
   }
 
-  void keep_results(const graph::Phase& phase) {
+  void keep_results(const graph::Phase& phase, int repeat) {
     for (const auto& part : hosts_.all()) {
       if (!part->has_ended()) continue;
+      directory_.add_host(part->name().empty() ? "launcher" : part->name(), phase, repeat, part->ended());
       directory_.event("host ends", {{"phase", phase.name}, {"host", part->name()}, {"end", part->ended()}});
       const json& names = part->ended()["records"];
       for (std::size_t i = 0; i < names.size(); ++i)

@@ -13,6 +13,7 @@
 #include "lab/facts_json.hpp"
 #include "lab/part_run.hpp"
 #include "phases/run.hpp"
+#include "record/pacing.hpp"
 #include "transport/service.hpp"
 
 namespace bodeflow::lab {
@@ -198,6 +199,8 @@ class PartServer {
     running_ = true;
     work_ = std::thread([this, initial = std::move(initial), options = std::move(options)] {
       execute::Outcome outcome = part_->run(initial, *directory_, repeat_, options);
+      if (const std::string kept = record::pacing_text(record::pacing_json(phase_->run, outcome)); !kept.empty())
+        services_.host()->log("clock", BF_LOG_INFO, kept);
       const std::lock_guard lock(mutex_);
       outcome_ = std::move(outcome);
     });
@@ -243,7 +246,7 @@ class PartServer {
                   {"reason", outcome.reason},
                   {"time_s", outcome.time_s},
                   {"wall_s", outcome.wall_s},
-                  {"overruns", outcome.overruns},
+                  {"pacing", record::pacing_json(phase_->run, outcome)},
                   {"links", part_->links()}};
     std::vector<SharedRecord> records;
     ended["records"] = json::array();

@@ -15,10 +15,6 @@ RunResult failure(const graph::Phase& phase, std::string reason) {
   return {RunResult::Status::failed, phase.name, "", std::move(reason), {}, false};
 }
 
-bool is_device(const BlockDescription& type) {
-  return std::find(type.roles.begin(), type.roles.end(), "device") != type.roles.end();
-}
-
 RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDirectory& directory, const RunOptions& options,
                    const HostServices& services, int repeat) {
   auto initial = initial_records(phase, directory);
@@ -39,7 +35,8 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
   const execute::Outcome outcome =
       execute::execute(phase, prepared.facts, prepared.plan, prepared.instances, *initial, watched, execution);
   if (options.watch != nullptr) options.watch->end_phase();
-  if (const std::string kept = record::pacing_text(outcome); !kept.empty()) services.log("clock", BF_LOG_INFO, kept);
+  if (const std::string kept = record::pacing_text(record::pacing_json(phase.run, outcome)); !kept.empty())
+    services.log("clock", BF_LOG_INFO, kept);
   const auto ended = directory.end_phase(outcome);
 
   RunResult result;
@@ -55,7 +52,7 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
     if (outcome.failed_block >= 0) {
       const graph::Block& block = phase.blocks[static_cast<std::size_t>(outcome.failed_block)];
       result.block = block.name;
-      if (is_device(*block.type)) result.status = RunResult::Status::device;
+      result.status = failure_of(block);
     }
     result.reason = outcome.reason;
   } else if (!ended) {
@@ -106,6 +103,12 @@ std::uint64_t seed_of(const graph::Phase& phase, int repeat) {
 
 RunResult rejection(const graph::Phase& phase, Problems problems) {
   return {RunResult::Status::rejected, phase.name, "", to_string(problems), std::move(problems), false};
+}
+
+RunResult::Status failure_of(const graph::Block& block) {
+  const auto& roles = block.type->roles;
+  const bool device = std::find(roles.begin(), roles.end(), "device") != roles.end();
+  return device ? RunResult::Status::device : RunResult::Status::failed;
 }
 
 const char* status_word(RunResult::Status status) {

@@ -42,6 +42,9 @@ struct RunResult {
 /// A phase that was refused because of `problems`.
 RunResult rejection(const graph::Phase& phase, Problems problems);
 
+/// How a run ends by an error of this block.
+RunResult::Status failure_of(const graph::Block& block);
+
 /// What the manifest says of a run that ended so.
 const char* status_word(RunResult::Status status);
 

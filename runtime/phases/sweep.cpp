@@ -141,7 +141,11 @@ RunResult run_sweep(const graph::Graph&, const graph::Phase& phase, record::RunD
     if (options.progress) options.progress(phase.name, {static_cast<double>(done), static_cast<double>(commands.size()), 0.0});
   });
   if (pool.interrupted) return {RunResult::Status::interrupted, phase.name, "", "interrupted", {}, false};
-  if (pool.failed) return failed(phase, fmt::format("run {} of the sweep failed: {}", *pool.failed, pool.message));
+  if (pool.failed) {
+    RunResult result = failed(phase, fmt::format("run {} of the sweep failed: {}", *pool.failed, pool.message));
+    if (pool.exit_code == kDeviceEnded) result.status = RunResult::Status::device;
+    return result;
+  }
 
   if (const std::string lost = merge_runs(phase, folder, values, directory); !lost.empty()) return failed(phase, lost);
   directory.event("sweep ends", {{"phase", phase.name}});

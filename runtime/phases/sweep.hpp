@@ -10,6 +10,9 @@ namespace bodeflow::phases {
 RunResult run_sweep(const graph::Graph& graph, const graph::Phase& phase, record::RunDirectory& directory,
                     const RunOptions& options);
 
+/// The exit code with which a worker says that a device ended its run.
+inline constexpr int kDeviceEnded = 5;
+
 /// One run of a sweep, in the worker process: what `phase-worker` was asked for.
 struct WorkerTask {
   std::string graph_file;

@@ -104,7 +104,7 @@ void Manifest::add_phase(const graph::Phase& phase, int repeat, const execute::O
   if (outcome.failed_block >= 0) entry["failed_block"] = phase.blocks[static_cast<std::size_t>(outcome.failed_block)].name;
   entry["time_s"] = outcome.time_s;
   entry["wall_s"] = outcome.wall_s;
-  if (auto pacing = pacing_json(outcome); !pacing.is_null()) entry["pacing"] = std::move(pacing);
+  if (auto pacing = pacing_json(phase.run, outcome); !pacing.is_null()) entry["pacing"] = std::move(pacing);
   ordered_json blocks = ordered_json::object();
   for (std::size_t b = 0; b < std::min(phase.blocks.size(), outcome.metrics.size()); ++b) {
     const auto& metrics = outcome.metrics[b];
@@ -116,6 +116,17 @@ void Manifest::add_phase(const graph::Phase& phase, int repeat, const execute::O
   }
   entry["blocks"] = std::move(blocks);
   json_["phases"].push_back(std::move(entry));
+}
+
+void Manifest::add_host(const std::string& host, const graph::Phase& phase, int repeat, const nlohmann::json& end) {
+  ordered_json entry;
+  entry["host"] = host;
+  entry["phase"] = phase.name;
+  entry["repeat"] = repeat;
+  entry["status"] = end.value("complete", false) ? "complete" : "partial";
+  for (const char* key : {"time_s", "wall_s", "pacing"})
+    if (end.contains(key) && !end[key].is_null()) entry[key] = end[key];
+  json_["hosts"].push_back(std::move(entry));
 }
 
 void Manifest::add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes) {

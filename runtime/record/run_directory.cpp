@@ -137,7 +137,7 @@ struct RunDirectory::State {
     details["reason"] = outcome.reason;
     details["time_s"] = outcome.time_s;
     details["wall_s"] = outcome.wall_s;
-    if (auto pacing = pacing_json(outcome); !pacing.is_null()) details["pacing"] = std::move(pacing);
+    if (auto pacing = pacing_json(phase->run, outcome); !pacing.is_null()) details["pacing"] = std::move(pacing);
     if (!recorded) details["error"] = recorded.error();
     event("phase ends", std::move(details));
 
@@ -234,6 +234,12 @@ SharedRecord RunDirectory::last_record(const std::string& phase, const std::stri
 void RunDirectory::set_result(const std::string& phase, const std::string& block, const std::string& port,
                               const SharedRecord& record) {
   state_->results.set(phase, block, port, record);
+}
+
+void RunDirectory::add_host(const std::string& host, const graph::Phase& phase, int repeat, const nlohmann::json& end) {
+  const std::lock_guard lock(state_->mutex);
+  state_->manifest.add_host(host, phase, repeat, end);
+  state_->keep_first_error(state_->manifest.write());
 }
 
 void RunDirectory::add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes) {

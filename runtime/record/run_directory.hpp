@@ -44,6 +44,8 @@ class RunDirectory {
   void set_result(const std::string& phase, const std::string& block, const std::string& port, const SharedRecord& record);
 
   /// Adds hashes that were made elsewhere (the runs of a sweep) to the manifest's.
+  /// As Manifest::add_host.
+  void add_host(const std::string& host, const graph::Phase& phase, int repeat, const nlohmann::json& end);
   void add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes);
 
   /// Writes result.json and the manifest's closing part; hashes the files that blocks wrote. `status`: "complete", "partial" or

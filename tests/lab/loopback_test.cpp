@@ -130,6 +130,45 @@ hosts: {bench: [unstable, dft]}
   CHECK(nlohmann::json::parse(lab.folder().read("out/manifest.json"))["status"] == "failed");
 }
 
+TEST_CASE("lab: a device that fails on another machine gives the exit code of a device") {
+  TestLab lab;
+  lab.agent("bench");
+  lab.folder().write("device.yaml", R"(bodeflow: 1
+run: {clock: realtime, duration: 1 s}
+blocks:
+  adc: {block: acquisition.alsa_capture, device: nowhere, rate: 48 kHz}
+  gain: {block: filters.gain, gain: 2}
+connections: [adc -> gain]
+hosts: {bench: [adc]}
+)");
+  Process run(lab.run(lab.path("device.yaml"), "out"));
+  const int code = run.wait();
+  INFO(run.output());
+  CHECK(code == 5);
+  CHECK(run.output().find("block 'adc': host 'bench': sound device 'nowhere' (capture) can't be opened") != std::string::npos);
+}
+
+TEST_CASE("lab: a paced run tells how each host kept time") {
+  TestLab lab;
+  lab.agent("bench");
+  const auto graph = lab.folder().write("paced.yaml", kPaced).string();
+  Process run(lab.run(graph, "out", {"--set", "run.duration=1 s", "--set", "run.chunk=10"}));
+  const int code = run.wait();
+  INFO(run.output());
+  REQUIRE(code == 0);
+  CHECK(run.output().find("bench: clock: 99 chunks began late by ") != std::string::npos);
+  const auto hosts = nlohmann::json::parse(lab.folder().read("out/manifest.json"))["hosts"];
+  REQUIRE(hosts.size() == 2);
+  for (const auto& host : hosts) {
+    CHECK(host["status"] == "complete");
+    CHECK(host["pacing"]["clock"] == "realtime");
+    CHECK(host["pacing"]["chunks"] == 99);
+  }
+  CHECK(hosts[0]["host"] == "launcher");
+  CHECK(hosts[1]["host"] == "bench");
+  CHECK(lab.folder().read("out/report.html").find("id=\"Pacing\"") != std::string::npos);
+}
+
 TEST_CASE("lab: Ctrl-C ends all parts and the agent serves the next run") {
   TestLab lab;
   Process& bench = lab.agent("bench");

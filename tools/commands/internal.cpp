@@ -4,6 +4,7 @@
 
 #include "commands/command.hpp"
 #include "commands/interrupt.hpp"
+#include "commands/run_graph.hpp"
 #include "lab/agents.hpp"
 #include "lab/part_server.hpp"
 #include "phases/sweep.hpp"
@@ -41,9 +42,9 @@ int work(const Session& session, WorkerCommand& command, bool seeded) {
   const phases::RunResult result = phases::run_worker(command.task, registry, command.run);
   if (result.status == phases::RunResult::Status::complete) return kDone;
   say(result.block.empty() ? result.reason : "block '" + result.block + "': " + result.reason);
-  if (result.hung) std::_Exit(kRunFailed);
-  if (result.status == phases::RunResult::Status::interrupted) return kInterrupted;
-  return result.status == phases::RunResult::Status::rejected ? kRejected : kRunFailed;
+  static_assert(phases::kDeviceEnded == kDevice);
+  if (result.hung) std::_Exit(exit_code_of(result.status));
+  return exit_code_of(result.status);
 }
 
 void add_worker(CLI::App& app, Session& session) {

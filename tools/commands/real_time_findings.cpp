@@ -54,6 +54,15 @@ Finding locked_memory() {
           "LimitMEMLOCK=infinity in the systemd unit"};
 }
 
+Finding sleeping_cores() {
+  constexpr const char* kDevice = "/dev/cpu_dma_latency";
+  if (access(kDevice, F_OK) != 0) return {"sleep of cores", "good", "not told by this system", ""};
+  if (access(kDevice, W_OK) == 0) return {"sleep of cores", "good", "runs may forbid it", ""};
+  return {"sleep of cores", "note", fmt::format("{} can't be written: cores may sleep between chunks", kDevice),
+          "for run: priority, add 'KERNEL==\"cpu_dma_latency\", GROUP=\"realtime\", MODE=\"0660\"' to "
+          "/etc/udev/rules.d/99-realtime.rules and the user to that group"};
+}
+
 Finding timer_resolution() {
   timespec step{};
   clock_getres(CLOCK_MONOTONIC, &step);
@@ -87,7 +96,7 @@ Finding isolated_cores(const std::string& root) {
 }
 
 std::vector<Finding> real_time_findings() {
-  return {priority(), locked_memory(), timer_resolution(), frequency_governor(""), isolated_cores("")};
+  return {priority(), locked_memory(), timer_resolution(), sleeping_cores(), frequency_governor(""), isolated_cores("")};
 }
 
 }  // namespace bodeflow::tools

@@ -43,22 +43,6 @@ nlohmann::json manifest_of(const graph::Graph& graph, const Registry& registry, 
           {"plugins", plugins}};
 }
 
-int exit_code_of(phases::RunResult::Status status) {
-  switch (status) {
-    case phases::RunResult::Status::complete:
-      return kDone;
-    case phases::RunResult::Status::interrupted:
-      return kInterrupted;
-    case phases::RunResult::Status::rejected:
-      return kRejected;
-    case phases::RunResult::Status::unreachable:
-    case phases::RunResult::Status::device:
-      return kDevice;
-    default:
-      return kRunFailed;
-  }
-}
-
 void say_what_is_wrong(const Problems& problems, bool own_graph) {
   if (!own_graph) return say_problems(problems);
   for (const auto& problem : problems) say_error(problem.text);
@@ -138,6 +122,22 @@ void log_warnings(live::View& view, const std::vector<phases::Prepared>& prepare
 }
 
 }  // namespace
+
+int exit_code_of(phases::RunResult::Status status) {
+  switch (status) {
+    case phases::RunResult::Status::complete:
+      return kDone;
+    case phases::RunResult::Status::interrupted:
+      return kInterrupted;
+    case phases::RunResult::Status::rejected:
+      return kRejected;
+    case phases::RunResult::Status::unreachable:
+    case phases::RunResult::Status::device:
+      return kDevice;
+    default:
+      return kRunFailed;
+  }
+}
 
 RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph& options) {
   ProgressLine progress;

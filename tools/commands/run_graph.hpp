@@ -27,6 +27,9 @@ struct RanGraph {
   nlohmann::ordered_json result;    ///< as result.json
 };
 
+/// How a process ends whose run ended so.
+int exit_code_of(phases::RunResult::Status status);
+
 /// Checks, runs and records a graph; says on standard error what went wrong. Used by `run` and `rerun`.
 RanGraph run_graph(const graph::Graph& graph, Registry& registry, const RunGraph& options);
 

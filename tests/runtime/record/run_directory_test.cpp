@@ -202,20 +202,29 @@ TEST_CASE("output files: a block's file in a later repetition has a number, anot
 
 TEST_CASE("how a phase kept time stands in the manifest and in the event of its end") {
   const TemporaryFolder folder;
-  const auto phase = source_phase("hold");
-  const auto run = make_run(folder.path(), source_graph({phase}));
+  auto phase = source_phase("hold");
+  phase.run.clock = graph::Clock::realtime;
+  phase.run.on_overrun = graph::Overrun::skip;
+  phase.run.priority = 80;
+  const auto simulated = source_phase("then");
+  const auto run = make_run(folder.path(), source_graph({phase, simulated}));
   execute::LatenessCounter late;
   for (const std::int64_t ns : {900, 1500, 40'000'000}) late.add(ns);
   execute::Outcome outcome;
   outcome.overruns = 1;
   outcome.skipped = 3;
   outcome.lateness = late.summary();
-  for (int repeat = 0; repeat < 2; ++repeat) {
-    REQUIRE(run->begin_phase(phase, source_facts(), nlohmann::json::object(), repeat));
-    REQUIRE(run->end_phase(repeat == 0 ? outcome : execute::Outcome{}));
-  }
+  outcome.not_permitted = {"priority 80 is not permitted"};
+  REQUIRE(run->begin_phase(phase, source_facts(), nlohmann::json::object(), 0));
+  REQUIRE(run->end_phase(outcome));
+  REQUIRE(run->begin_phase(simulated, source_facts(), nlohmann::json::object(), 0));
+  REQUIRE(run->end_phase({}));
   const auto phases = read_json(run->path() / "manifest.json")["phases"];
   const auto& pacing = phases[0]["pacing"];
+  CHECK(pacing["clock"] == "realtime");
+  CHECK(pacing["on_overrun"] == "skip");
+  CHECK(pacing["priority"] == 80);
+  CHECK(pacing["not_permitted"] == nlohmann::json{"priority 80 is not permitted"});
   CHECK(pacing["overruns"] == 1);
   CHECK(pacing["skipped"] == 3);
   CHECK(pacing["chunks"] == 3);
@@ -224,10 +233,11 @@ TEST_CASE("how a phase kept time stands in the manifest and in the event of its 
   CHECK(pacing["bins"][0] == 1);
   CHECK_FALSE(phases[1].contains("pacing"));
   for (const auto& event : read_events(run->path()))
-    if (event["event"] == "phase ends" && event["repeat"] == 0) CHECK(event["pacing"] == pacing);
-  CHECK(record::pacing_text(outcome) ==
+    if (event["event"] == "phase ends" && event["phase"] == "hold") CHECK(event["pacing"] == pacing);
+  CHECK(record::pacing_text(pacing) ==
         "3 chunks began late by 1.53 us in the median, 39.9 ms at 99 %, 40 ms at most; 1 overrun, 3 chunks of time left out");
-  CHECK(record::pacing_text({}) == "");
+  CHECK(record::pacing_text(record::pacing_json(phase.run, {})) == "");
+  CHECK(record::pacing_text(nullptr) == "");
 }
 
 TEST_CASE("changes of live parameters stand in the events with block, parameter, value and position") {

@@ -136,6 +136,44 @@ TEST_CASE("report: names and texts from files never become markup") {
   }
 }
 
+TEST_CASE("report: paced phases show on each host how late their chunks began and what was not permitted") {
+  const nlohmann::json paced = {{"clock", "realtime"},
+                                {"on_overrun", "skip"},
+                                {"priority", 80},
+                                {"cores", {1}},
+                                {"not_permitted", {"priority 80 is not permitted"}},
+                                {"overruns", 7},
+                                {"skipped", 3},
+                                {"chunks", 60010},
+                                {"min_s", 2e-6},
+                                {"median_s", 13.5e-6},
+                                {"p99_s", 41e-6},
+                                {"max_s", 2.5e-3},
+                                {"bins", {0, 0, 10, 20000, 30000, 9990, 0, 0, 0, 0, 0, 10}}};
+  const auto manifest = [](const nlohmann::json& pacing) {
+    const nlohmann::json on_bench = {{"clock", "hardware"}, {"overruns", 2}, {"chunks", 0}};
+    return nlohmann::json{{"status", "complete"},
+                          {"phases", {{{"phase", "hold"}, {"repeat", 0}, {"pacing", pacing}}}},
+                          {"hosts", {{{"host", "bench"}, {"phase", "hold"}, {"repeat", 0}, {"pacing", on_bench}}}}}
+        .dump();
+  };
+  const Folder folder;
+  folder.write("result.json", test::result_with({{"r", test::response_record(1, 1)}}).dump());
+  folder.write("manifest.json", manifest(paced));
+  const WrittenReport report = written(folder);
+  const std::string page = folder.read("report.html");
+  for (const char* text : {"id=\"Pacing\"", "60,010", "13.5", "2500", "realtime, on_overrun: skip, priority 80, cores [1]",
+                           "hardware, without priority", "bench", "priority 80 is not permitted"}) {
+    INFO(text);
+    CHECK(page.find(text) != std::string::npos);
+  }
+  const auto is_histogram = [](const auto& plot) { return plot.filename() == "lateness_hold.svg"; };
+  CHECK(std::count_if(report.plots.begin(), report.plots.end(), is_histogram) == 1);
+
+  folder.write("manifest.json", manifest({{"bins", {"x", -1, nullptr, 1e300}}, {"chunks", -3}, {"cores", "all"}}));
+  written(folder);
+}
+
 TEST_CASE("report: a folder that holds no run is refused by name") {
   const Folder folder;
   const auto report = write_report({folder.path(), {}}, no_plugins());

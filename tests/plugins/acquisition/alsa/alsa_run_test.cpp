@@ -2,74 +2,27 @@
 #include <complex>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
-#include <sstream>
 
 #include "acquisition/alsa/pcm.hpp"
 #include "catch.hpp"
-#include "system/command.hpp"
+#include "sound_card_bench.hpp"
 
 using bodeflow::acquisition::Direction;
 using bodeflow::acquisition::Pcm;
 using bodeflow::acquisition::PcmSpec;
 using bodeflow::acquisition::SampleFormat;
+using bodeflow::test::column;
 using bodeflow::test::Ended;
-using bodeflow::test::Folder;
+using bodeflow::test::kSoundCardGraphs;
 using bodeflow::test::run_bodeflow;
+using bodeflow::test::SoundCardBench;
 using Catch::Matchers::Contains;
 using nlohmann::json;
 using Complex = std::complex<double>;
 namespace fs = std::filesystem;
 
 namespace {
-
-const std::string kGraphs = BODEFLOW_SOURCE_DIR "/graphs/acquisition/";
-
-/// A folder with an ALSA configuration of one card, `loop`.
-class Bench {
- public:
-  explicit Bench(const std::string& settings) {
-    folder.write("asound.conf", "pcm_type.bodeflow_loop { lib \"" BODEFLOW_TEST_SOUND_CARD
-                                "\" }\npcm.loop { type bodeflow_loop " +
-                                    settings + " }\n");
-  }
-  Ended run(std::vector<std::string> words) const {
-    words.insert(words.begin(), "run");
-    fs::remove_all(folder.path() / "out");
-    words.insert(words.end(), {"--out", "out"});
-    return run_bodeflow(words, folder.path(), {"ALSA_CONFIG_PATH=" + (folder.path() / "asound.conf").string()});
-  }
-  /// A graph of ours on the card, with room for a busy machine.
-  json measure(const std::string& graph, std::vector<std::string> settings, int skip = 6) const {
-    settings.insert(settings.end(), {"device=loop", "blocks.response.skip=" + std::to_string(skip), "blocks.card.buffer=65536",
-                                     "blocks.card.lead=24000"});
-    std::vector<std::string> words{kGraphs + graph};
-    for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
-    return results(words);
-  }
-  /// Of a run that must go well.
-  json results(const std::vector<std::string>& words) const {
-    const Ended ended = run(words);
-    INFO(ended.err);
-    REQUIRE(ended.exit_code == 0);
-    return json::parse(folder.read("out/result.json"))["results"];
-  }
-  /// The graph of one capture block that records what it gives for `duration`.
-  std::string capture(const std::string& parameters, const std::string& duration = "0.5 s",
-                      const std::string& clock = "realtime") const {
-    return folder
-        .write("capture.yaml",
-               "bodeflow: 1\nrun: {clock: " + clock + ", chunk: 256, duration: " + duration +
-                   "}\nblocks:\n  adc: {block: acquisition.alsa_capture, device: loop, rate: 48 kHz, buffer: 65536, " +
-                   parameters +
-                   "}\n  file: {block: output.csv, file: x.csv}\n  gaps: {block: output.records, file: gaps.jsonl}\n"
-                   "connections:\n  - adc -> file\n  - adc.gaps -> gaps\n")
-        .string();
-  }
-
-  const Folder folder;
-};
 
 /// A variable of this process's own environment.
 class Variable {
@@ -82,20 +35,6 @@ class Variable {
  private:
   const char* name_;
 };
-
-/// A column of a CSV text below its header.
-std::vector<double> column(const std::string& text, std::size_t index) {
-  std::vector<double> values;
-  std::istringstream rows(text);
-  std::string row;
-  std::getline(rows, row);
-  while (std::getline(rows, row)) {
-    std::istringstream fields(row);
-    for (std::size_t i = 0; i <= index; ++i) std::getline(fields, row, ',');
-    values.push_back(std::stod(row));
-  }
-  return values;
-}
 
 /// b0 .. a2 of the section below, at z.
 constexpr double kB[] = {0.02, 0.04, 0.02}, kA[] = {-1.56, 0.64};
@@ -121,7 +60,7 @@ int inside(const json& response, double delay) {
 }  // namespace
 
 TEST_CASE("a multisine played and captured identifies the filter and the delay of the loop within the confidence circles") {
-  const Bench bench("delay 37 noise 1e-4 " + kSection);
+  const SoundCardBench bench("delay 37 noise 1e-4 " + kSection);
   const auto results = bench.measure("sound_card.yaml", {});
   REQUIRE(results["response"]["arrays"]["frequency"]["data"].size() == 180);
   CHECK(inside(results["response"], 37) >= 162);  // 95 % of 180, less 3.1 standard deviations
@@ -135,14 +74,14 @@ TEST_CASE("a multisine played and captured identifies the filter and the delay o
 }
 
 TEST_CASE("the round trip is measured by its graph") {
-  const Bench bench("delay 123 noise 1e-4");
+  const SoundCardBench bench("delay 123 noise 1e-4");
   const auto delay = bench.measure("sound_card_round_trip.yaml", {})["delay"]["attributes"];
   const double samples = 48e3 * delay["delay"].get<double>();
   CHECK(samples == Approx(123).margin(0.01));
 }
 
 TEST_CASE("the round trip as measured is taken out of what is captured") {
-  const Bench bench("delay 123 noise 1e-4 " + kSection);
+  const SoundCardBench bench("delay 123 noise 1e-4 " + kSection);
   const auto results = bench.measure("sound_card.yaml", {"round_trip=123"});
   CHECK(inside(results["response"], 0) >= 162);
   CHECK(results["card"]["attributes"]["round_trip_delay"] == 123);
@@ -150,7 +89,7 @@ TEST_CASE("the round trip as measured is taken out of what is captured") {
 
 TEST_CASE("the corner of the AC coupling is measured by its graph") {
   // One pole at 20 Hz, one zero at 0: 0.9973854 = exp(-2 pi 20 / 48000).
-  const Bench bench("delay 5 noise 1e-4 b [ 0.9986927 -0.9986927 0.0 ] a [ -0.9973854 0.0 ]");
+  const SoundCardBench bench("delay 5 noise 1e-4 b [ 0.9986927 -0.9986927 0.0 ] a [ -0.9973854 0.0 ]");
   const auto model = bench.measure("sound_card_coupling.yaml", {"period=9600", "round_trip=5"}, 3)["coupling"];
   const auto& arrays = model["arrays"];
   const Complex pole(arrays["poles"]["data"][0][0], arrays["poles"]["data"][0][1]);
@@ -158,7 +97,7 @@ TEST_CASE("the corner of the AC coupling is measured by its graph") {
 }
 
 TEST_CASE("overruns and underruns injected into a measurement are counted exactly and it goes on") {
-  const Bench bench("delay 37 noise 1e-4 overruns [ 9000 20000 41000 ] underruns [ 15000 30000 ] " + kSection);
+  const SoundCardBench bench("delay 37 noise 1e-4 overruns [ 9000 20000 41000 ] underruns [ 15000 30000 ] " + kSection);
   const auto results = bench.measure("sound_card.yaml", {"blocks.card.on_gap=mark"});
   const auto& device = results["card"]["attributes"];
   CHECK(device["overruns"] == 3);
@@ -169,7 +108,7 @@ TEST_CASE("overruns and underruns injected into a measurement are counted exactl
 }
 
 TEST_CASE("what is captured answers what is played sample by sample on each channel behind an overrun too") {
-  const Bench bench("delay 20 overruns [ 15000 ]");
+  const SoundCardBench bench("delay 20 overruns [ 15000 ]");
   const auto graph = bench.folder.write(
       "stereo.yaml",
       "bodeflow: 1\nrun: {clock: realtime, chunk: 300, duration: 0.6 s, seed: 1}\nblocks:\n"
@@ -198,7 +137,7 @@ TEST_CASE("what is captured answers what is played sample by sample on each chan
 }
 
 TEST_CASE("an overrun of a capture is marked at its place with the samples that are missing") {
-  const Bench bench("ramp 1 overruns [ 6000 12000 ]");
+  const SoundCardBench bench("ramp 1 overruns [ 6000 12000 ]");
   const auto results = bench.results({bench.capture("on_gap: mark")});
   CHECK(results["adc"]["attributes"]["overruns"] == 2);
 
@@ -225,7 +164,7 @@ TEST_CASE("an overrun of a capture is marked at its place with the samples that 
 }
 
 TEST_CASE("an overrun ends a run that does not mark it: block, place, cause") {
-  const Bench bench("overruns [ 6000 ]");
+  const SoundCardBench bench("overruns [ 6000 ]");
   const Ended ended = bench.run({bench.capture("on_gap: end")});
   CHECK(ended.exit_code == 5);
   CHECK_THAT(ended.err,
@@ -233,21 +172,34 @@ TEST_CASE("an overrun ends a run that does not mark it: block, place, cause") {
   CHECK(json::parse(bench.folder.read("out/result.json"))["status"] == "failed");
 }
 
+TEST_CASE("a device that ends a run of a sweep gives the exit code of a device") {
+  const SoundCardBench bench("overruns [ 3000 ]");
+  const auto graph = bench.folder.write(
+      "sweep.yaml",
+      "bodeflow: 1\nphases:\n  - name: several\n    run: {clock: realtime, chunk: 256, duration: 0.2 s}\n    blocks:\n"
+      "      adc: {block: acquisition.alsa_capture, device: loop, rate: 48 kHz, buffer: 65536, on_gap: end}\n"
+      "      file: {block: output.csv, file: x.csv}\n    connections:\n      - adc -> file\n"
+      "    sweep: {seed: 1..2}\n");
+  const Ended ended = bench.run({graph.string()});
+  CHECK(ended.exit_code == 5);
+  CHECK_THAT(ended.err, Contains("of the sweep failed: block 'adc': overrun before sample "));
+}
+
 TEST_CASE("a device that breaks off at each start ends a run that marks gaps") {
-  const Bench bench("overruns [ 0 0 0 0 0 0 0 0 0 0 ]");
+  const SoundCardBench bench("overruns [ 0 0 0 0 0 0 0 0 0 0 ]");
   CHECK_THAT(bench.run({bench.capture("on_gap: mark")}).err,
              Contains("block 'adc': the device breaks off at each start, 8 times in a row"));
 }
 
 TEST_CASE("a device that stops delivering ends the run after its timeout") {
-  const Bench bench("stall 5000");
+  const SoundCardBench bench("stall 5000");
   const Ended ended = bench.run({bench.capture("timeout: 200 ms")});
   CHECK(ended.exit_code == 5);
   CHECK_THAT(ended.err, Contains("block 'adc': sound device 'loop' (capture) delivered nothing for 0.2 s"));
 }
 
 TEST_CASE("what a sound device can't do is refused with what it can") {
-  const Bench bench("");
+  const SoundCardBench bench("");
   const Variable config("ALSA_CONFIG_PATH", bench.folder.path() / "asound.conf");
   const auto said = [](const std::function<void(PcmSpec&)>& change) {
     PcmSpec spec;
@@ -272,7 +224,7 @@ TEST_CASE("what a sound device can't do is refused with what it can") {
 }
 
 TEST_CASE("a device is refused in simulated time") {
-  const Bench bench("");
+  const SoundCardBench bench("");
   const Ended ended = bench.run({bench.capture("format: s16", "0.1 s", "simulated")});
   CHECK(ended.exit_code == 5);
   CHECK_THAT(ended.err,
@@ -280,7 +232,7 @@ TEST_CASE("a device is refused in simulated time") {
 }
 
 TEST_CASE("a calibration file makes physical values of each channel") {
-  const Bench bench("ramp 1");
+  const SoundCardBench bench("ramp 1");
   bench.folder.write("cal.csv", "# bench 3\nchannel, gain, offset, unit, date\nch2, 0.5, 1, A, today\nch1, -2, 0, V, today\n");
   const auto results = bench.results({bench.capture("channels: 2, format: s16, calibration: cal.csv", "0.05 s")});
   std::istringstream rows(bench.folder.read("out/x.csv"));
@@ -300,7 +252,7 @@ TEST_CASE("a calibration file makes physical values of each channel") {
 }
 
 TEST_CASE("samples played by a playback block alone all leave the device and limited ones are counted") {
-  const Bench bench("");
+  const SoundCardBench bench("");
   const auto graph = bench.folder.write(
       "play.yaml",
       "bodeflow: 1\nrun: {clock: realtime, chunk: 256, duration: 0.25 s}\nblocks:\n"
@@ -317,7 +269,7 @@ TEST_CASE("samples played by a playback block alone all leave the device and lim
 }
 
 TEST_CASE("underruns of a playback are counted exactly") {
-  const Bench bench("underruns [ 3000 6000 ]");
+  const SoundCardBench bench("underruns [ 3000 6000 ]");
   const auto graph =
       bench.folder.write("play.yaml",
                          "bodeflow: 1\nrun: {clock: realtime, chunk: 256, duration: 0.3 s}\nblocks:\n"
@@ -330,15 +282,15 @@ TEST_CASE("underruns of a playback are counted exactly") {
 }
 
 TEST_CASE("a lead that the round trip outlasts is refused, and lines that the coupling turns are warned of") {
-  const Bench bench("");
-  CHECK_THAT(bench.run({kGraphs + "sound_card.yaml", "--set", "device=loop", "--set", "round_trip=3000"}).err,
+  const SoundCardBench bench("");
+  CHECK_THAT(bench.run({kSoundCardGraphs + "sound_card.yaml", "--set", "device=loop", "--set", "round_trip=3000"}).err,
              Contains("the playback would run dry; raise lead to 3512 or more"));
-  CHECK_THAT(run_bodeflow({"check", kGraphs + "sound_card.yaml", "--set", "ac_corner=12 Hz"}).err,
+  CHECK_THAT(run_bodeflow({"check", kSoundCardGraphs + "sound_card.yaml", "--set", "ac_corner=12 Hz"}).err,
              Contains("the line at 100 Hz lies below ten times the corner of the AC coupling, 12 Hz"));
 }
 
 TEST_CASE("Ctrl-C ends a run on a device at once and keeps what it gave") {
-  const Bench bench("ramp 1");
+  const SoundCardBench bench("ramp 1");
   const std::string graph = bench.capture("format: s16", "60 s");
   // Interrupted as soon as there is something to keep.
   const std::string command =

@@ -189,6 +189,7 @@ class Launch {
         hosts.push_back({{"host", part->name()},
                          {"time_s", state.value("time_s", 0.0)},
                          {"rate", state.value("rate", 0.0)},
+                         {"pacing", state.value("pacing", json())},
                          {"links", state.value("links", json::array())}});
     }
     (void)board_->say(json{{"run", hosts_.run()}, {"graph", graph_.file}, {"phase", phase.name}, {"hosts", hosts}}.dump());

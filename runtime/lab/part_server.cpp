@@ -11,6 +11,7 @@
 #include "graph/load.hpp"
 #include "lab/channel.hpp"
 #include "lab/facts_json.hpp"
+#include "lab/look.hpp"
 #include "lab/part_run.hpp"
 #include "phases/run.hpp"
 #include "record/pacing.hpp"
@@ -192,6 +193,7 @@ class PartServer {
     options.seed = said.at("seed").get<std::uint64_t>();
     options.vector_level = vector_level_;
     options.stop = &stop_phase_;
+    options.observer = &look_;
     options.progress = [this](const execute::Progress& now) {
       const std::lock_guard lock(mutex_);
       progress_ = now;
@@ -229,8 +231,22 @@ class PartServer {
     if (std::chrono::duration<double>(Clock::now() - told_).count() < kBeat_s) return {};
     told_ = Clock::now();
     json state = {{"event", "state"}, {"time_s", progress.time_s}, {"total_s", progress.total_s}, {"rate", progress.rate}};
-    if (running_) state["links"] = part_->links();
+    if (running_) {
+      state["links"] = part_->links();
+      state["pacing"] = pacing();
+    }
     return say(state);
+  }
+
+  /// How the phase has kept time so far.
+  json pacing() const {
+    const auto now = look_.state();
+    if (!now) return nullptr;
+    execute::Outcome so_far;
+    so_far.overruns = now->overruns;
+    so_far.skipped = now->skipped;
+    so_far.lateness = now->lateness;
+    return record::pacing_json(phase_->run, so_far);
   }
 
   Done tell_end(const execute::Outcome& outcome) {
@@ -309,6 +325,7 @@ class PartServer {
   std::deque<json> news_;
   std::optional<execute::Outcome> outcome_;
   execute::Progress progress_;
+  Look look_;
   transport::Service topics_;  ///< of blocks; outlives them
   phases::Services services_;
   std::shared_ptr<transport::Participant> participant_;

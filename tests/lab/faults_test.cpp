@@ -289,6 +289,9 @@ TEST_CASE("lab: top shows every host and connection of a run") {
     CHECK(host["time_s"].get<double>() > 0.0);
     CHECK(host["time_s"].get<double>() < 4.0);
     CHECK(host["rate"].get<double>() == Approx(1.0).margin(0.2));
+    CHECK(host["pacing"]["clock"] == "realtime");
+    CHECK(host["pacing"]["chunks"].get<double>() > 10.0);
+    CHECK(host["pacing"]["median_s"].get<double>() <= host["pacing"]["max_s"].get<double>());
     for (const json& link : host["links"]) {
       seen.push_back(host["host"].get<std::string>() + (link["sends"] == true ? " > " : " < ") +
                      link["other"].get<std::string>());

@@ -8,6 +8,7 @@
 #include "commands/interrupt.hpp"
 #include "commands/lab_options.hpp"
 #include "console/json_output.hpp"
+#include "record/pacing.hpp"
 
 namespace bodeflow::tools {
 namespace {
@@ -71,6 +72,7 @@ class Screen {
     for (const json& host : run.value("hosts", json::array())) {
       fmt::print("  {} at {:.2f} s, {:.3g} times real time\n", bold(host_name(host.value("host", json()))),
                  host.value("time_s", 0.0), host.value("rate", 0.0));
+      if (const std::string kept = record::pacing_text(host.value("pacing", json())); !kept.empty()) fmt::print("    {}\n", kept);
       for (const json& link : host.value("links", json::array())) print_link(key(run, host, link), link, width, elapsed_s);
     }
   }

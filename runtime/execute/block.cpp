@@ -34,6 +34,11 @@ bool settle(BlockRun& block, std::int32_t status) {
     control.fail(block.index, block.fault_text);
     return false;
   }
+  if (block.guard != nullptr && block.guard->stopped() >= 0) {
+    block.position += static_cast<std::int64_t>(block.process.done);
+    control.violate(block.guard->stopped());
+    return false;
+  }
   if (status != BF_OK) {
     std::string reason = block.instance->take_error();
     control.fail(block.index, reason.empty() ? "failed without a reason" : std::move(reason));

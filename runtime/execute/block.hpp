@@ -15,6 +15,7 @@ namespace bodeflow::execute {
 struct Run;
 struct Chunk;
 struct Asked;
+class Guard;
 
 /// Where a record goes from a message output.
 struct Route {
@@ -97,6 +98,7 @@ struct alignas(64) BlockRun {
   std::vector<SharedRecord> held;          ///< and their records
   std::string fault_text;
   RemoteEnd* remote = nullptr;  ///< one end of a link to another process
+  Guard* guard = nullptr;       ///< of its limits, if it has any
   int worker = -1;              ///< asynchronous: index of its worker
 
   double timed_s = 0.0;  ///< of the firings that were timed

@@ -243,6 +243,19 @@ tl::expected<void, std::string> add_dependencies(Run& run) {
   return {};
 }
 
+/// No thread begins a chunk before one that may end the run by a limit has done the chunk as many before it as there are threads.
+void add_limit_dependencies(Run& run) {
+  const auto threads = static_cast<std::int64_t>(run.partitions.size());
+  for (std::size_t i = 0; i < run.plan->limits.size(); ++i) {
+    if (run.plan->limits[i].on_violation != graph::OnViolation::stop) continue;
+    const int block = run.phase->limits[i].port.block;
+    PartitionRun& watching = *run.partitions[static_cast<std::size_t>(run.block(block).partition)];
+    for (const auto& other : run.partitions)
+      if (other.get() != &watching)
+        depend(run, block, op_of(watching, block), other->ops.front().blocks.front()->index, Lane::Wait::samples, threads);
+  }
+}
+
 /// Calls that may go the short way: their streams stand at a chunk's start whenever none is under way.
 void mark_plain(Run& run) {
   for (const auto& partition : run.partitions)
@@ -299,6 +312,8 @@ tl::expected<void, std::string> compile(Run& run, const std::vector<std::unique_
   add_carried(run);
   if (auto added = add_dependencies(run); !added) return added;
   if (auto compiled = compile_messages(run, initial); !compiled) return compiled;
+  guard_limits(run);
+  add_limit_dependencies(run);
   mark_plain(run);
   return {};
 }

@@ -4,9 +4,9 @@
 
 namespace bodeflow::execute {
 
-void Control::fail(int block, std::string reason) { stop({false, block, std::move(reason)}); }
+void Control::fail(int block, std::string reason) { stop({false, block, std::move(reason), -1}); }
 
-void Control::interrupt() { stop({true, -1, "interrupted"}); }
+void Control::interrupt() { stop({true, -1, "interrupted", -1}); }
 
 void Control::stop(End end) {
   {

@@ -15,10 +15,13 @@ class Control {
     bool interrupted = false;
     int block = -1;
     std::string reason;
+    int limit = -1;
   };
 
   /// Ends the run because of `block` (-1: none). Any thread.
   void fail(int block, std::string reason);
+  /// Ends the run because a limit was violated. No memory is taken: the reason is told later.
+  void violate(int limit) { stop({false, -1, {}, limit}); }
   /// Ends the run because the caller asked for it.
   void interrupt();
   bool stopping() const { return stopping_.load(std::memory_order_acquire); }

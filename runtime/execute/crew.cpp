@@ -72,6 +72,7 @@ bool Crew::watch(std::size_t first) {
   std::unique_lock lock(state_->mutex);
   while (!state_->changed.wait_for(lock, poll, [&] { return all_over(first); })) {
     run_->stop_wanted();
+    run_->tell_violations();
     const std::uint64_t now = calls_of(members_);
     const double still = Seconds(Clock::now() - since).count();
     const bool finishing = !run_->control.stopping() && in_finish(members_);

@@ -45,8 +45,9 @@ std::size_t activate(Run& run, const std::vector<std::unique_ptr<Instance>>& ins
   return instances.size();
 }
 
-/// All threads of the run until their end; false: one hangs.
-bool run_threads(const std::shared_ptr<Run>& run, Crew& crew) {
+/// All threads of the run until their end; false: one hangs. `leave` is called when a run that ends early has no thread in a
+/// block any more but those of asynchronous blocks: a device need not wait for what still computes.
+bool run_threads(const std::shared_ptr<Run>& run, Crew& crew, const std::function<void()>& leave) {
   for (const auto& worker : run->workers)
     crew.start(worker->lane(), fmt::format("the thread of block '{}'", run->name(worker->block().index)),
                [w = worker.get()] { w->run(); });
@@ -57,7 +58,10 @@ bool run_threads(const std::shared_ptr<Run>& run, Crew& crew) {
         crew.start(partition->lane, fmt::format("thread {}", partition->index + 1), [p = partition.get()] { p->work(); }));
   run->open_gate();
   if (!crew.watch(first)) return false;
-  if (!run->control.stopping()) crew.start(run->finisher, "the last thread", [r = run.get()] { finish_run(*r); });
+  if (run->control.stopping())
+    leave();
+  else
+    crew.start(run->finisher, "the last thread", [r = run.get()] { finish_run(*r); });
   return crew.watch();
 }
 
@@ -91,13 +95,19 @@ Outcome outcome_of(const Run& run, bool hung, const std::string& hang) {
     LatenessCounter lateness;
     for (const auto& partition : run.partitions) lateness.add(partition->lateness);
     outcome.lateness = lateness.summary();
+    for (const auto& limiter : run.limiters) outcome.limits.push_back(limiter->record());
   }
   if (!run.control.stopping()) return outcome;
   const Control::End end = run.control.end();
   outcome.status = Outcome::Status::partial;
   outcome.interrupted = end.interrupted;
   outcome.failed_block = end.block;
+  outcome.limit = end.limit;
   outcome.reason = end.reason;
+  if (end.limit >= 0) {
+    const Limiter& limiter = *run.limiters[static_cast<std::size_t>(end.limit)];
+    outcome.reason = "limit violated: " + to_text(limiter.limit(), limiter.first()) + "; the run was ended";
+  }
   if (hung && end.reason != hang && (end.interrupted || end.block >= 0)) outcome.reason += "; then " + hang;
   return outcome;
 }
@@ -125,7 +135,16 @@ Outcome execute_all(const std::shared_ptr<Run>& run, const std::vector<std::uniq
   run->started = Clock::now();
   const std::size_t activated = activate(*run, instances);
   bool hung = false;
-  std::vector<int> hanging;
+  std::vector<bool> active(instances.size(), false);
+  std::fill_n(active.begin(), activated, true);
+  const auto deactivate = [&](std::size_t i) {
+    if (active[i]) instances[i]->deactivate();
+    active[i] = false;
+  };
+  const auto leave = [&] {
+    for (std::size_t i = 0; i < instances.size(); ++i)
+      if (run->blocks[i]->worker < 0) deactivate(i);
+  };
   std::string hang;
   if (activated == instances.size()) {
     const Warn warn = [&run](const std::string& text) { run->warn(text); };
@@ -137,17 +156,18 @@ Outcome execute_all(const std::shared_ptr<Run>& run, const std::vector<std::uniq
     const Reporter reporter(*run);
     Crew crew(run);
     try {
-      hung = !run_threads(run, crew);
+      hung = !run_threads(run, crew, leave);
     } catch (const std::exception& e) {  // no thread could be made: those that run are ended
       run->control.fail(-1, e.what());
       hung = !crew.watch();
     }
     if (hung) run->control.abandon();
     hang = crew.hang();
-    hanging = crew.disband();
+    for (const int hanging : crew.disband())
+      if (hanging >= 0) active[static_cast<std::size_t>(hanging)] = false;
   }
-  for (std::size_t i = 0; i < activated; ++i)
-    if (std::find(hanging.begin(), hanging.end(), static_cast<int>(i)) == hanging.end()) instances[i]->deactivate();
+  for (std::size_t i = 0; i < instances.size(); ++i) deactivate(i);
+  run->tell_violations();
   return outcome_of(*run, hung, hang);
 }
 

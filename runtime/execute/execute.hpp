@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "execute/access.hpp"
+#include "execute/violation.hpp"
 #include "plan/plan.hpp"
 
 namespace bodeflow::execute {
@@ -53,6 +54,8 @@ struct Options {
   Rate least_end;                                 ///< seconds; when the run ends on other hosts at the earliest
   Observer* observer = nullptr;                   ///< sees the run and changes live parameters while it goes on
   std::vector<PastChange> past_changes;           ///< in the order in which they had effect
+  /// Told on the caller's thread, within a tenth of a second, of the first violation of each limit (index into Plan::limits).
+  std::function<void(int limit, const Violation&)> violated;
 };
 
 /// A record of an earlier phase for a message input, delivered at time zero.
@@ -72,6 +75,7 @@ struct Outcome {
   Status status = Status::complete;
   bool interrupted = false;  ///< by Options::stop
   int failed_block = -1;     ///< whose error ended the run, or -1
+  int limit = -1;            ///< index into Plan::limits, of the one that ended the run, or -1
   bool hung = false;         ///< a block never came back: its thread lives on, so neither instances nor libraries may be freed
   std::string reason;        ///< why a run is partial
   double time_s = 0.0;       ///< of the run's clock that was done
@@ -81,6 +85,7 @@ struct Outcome {
   Lateness lateness;           ///< realtime clock
   std::vector<std::string> not_permitted;  ///< priority, locked memory, cores: what the run went on without, and how to permit it
   std::vector<BlockMetrics> metrics;
+  std::vector<LimitRecord> limits;  ///< as Plan::limits
 };
 
 /// What came of running a planned phase to its end: activates, processes, finishes, deactivates the instances. Never throws.
@@ -96,9 +101,13 @@ struct Outcome {
 /// Clocks: `realtime` begins each chunk at its absolute time of the steady clock. With `hardware` a device block holds the run
 /// back while it waits for its samples; the engine does not pace.
 ///
-/// Errors end the run as partial, with the block and its own words; the first one of several threads stands. Without any
-/// call completed for Options::watchdog_s (a finish: 60 times that) the run ends with a reason that names who waits for whom. A
-/// call that hangs can't be cancelled: then `hung` is set, the block in that call is not deactivated, its thread stays behind,
+/// Limits: a sample that leaves one acts as plan::Limit says: an input's before the block sees it, in whatever chunk it lies.
+/// Where one ends the run, the block with that port makes no further firing, and no other block more than the limit's latency.
+///
+/// Errors end the run as partial, with the block and its own words; the first one of several threads stands. Blocks are
+/// deactivated when the threads that call their process have left, whatever asynchronous blocks still compute. Without any call
+/// completed for Options::watchdog_s (a finish: 60 times that) the run ends with a reason that names who waits for whom. A call
+/// that hangs can't be cancelled: then `hung` is set, the block in that call is not deactivated, its thread stays behind,
 /// detached, with its memory. The caller must not destroy that instance, or unload its plugin, and should end the process soon.
 Outcome execute(const graph::Phase& phase, const plan::Facts& facts, const plan::Plan& plan,
                 const std::vector<std::unique_ptr<Instance>>& instances, const std::vector<InitialRecord>& initial, Sink& sink,

@@ -84,7 +84,12 @@ bool PartitionRun::run_op(Op& op, std::int64_t op_index, const Chunk& chunk) {
       one.done = chunk.begin * one.writer->per_repetition;
       copy(one, chunk);
     }
-  if (!go_on || (!op.recorded.empty() && !record(op, chunk))) return false;
+  // A limit's violation is kept too: it is what a reader of the recording looks for.
+  const bool keep = go_on || std::any_of(op.blocks.begin(), op.blocks.end(), [](const BlockRun* block) {
+                      return block->guard != nullptr && block->guard->stopped() >= 0;
+                    });
+  if (keep && !op.recorded.empty() && !record(op, chunk)) return false;
+  if (!go_on) return false;
   for (BlockRun* block : op.blocks) block->reached.store(block->position, std::memory_order_relaxed);
   if (op.followed) {
     done.store(chunk.index * static_cast<std::int64_t>(ops.size()) + op_index + 1, std::memory_order_release);

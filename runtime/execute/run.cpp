@@ -34,6 +34,12 @@ bool Run::stop_wanted() {
   return true;
 }
 
+void Run::tell_violations() {
+  if (!options.violated) return;
+  for (std::size_t i = 0; i < limiters.size(); ++i)
+    if (limiters[i]->news()) options.violated(static_cast<int>(i), limiters[i]->first());
+}
+
 Time Run::end_time() const {
   Time latest = multiple_of(1, options.least_end);
   for (const auto& block : blocks) {

@@ -6,6 +6,7 @@
 
 #include "execute/block.hpp"
 #include "execute/execute.hpp"
+#include "execute/limits.hpp"
 #include "execute/memory.hpp"
 #include "execute/worker.hpp"
 
@@ -46,6 +47,8 @@ struct Run {
   std::vector<std::unique_ptr<BlockRun>> blocks;  ///< as Phase::blocks
   std::vector<std::unique_ptr<PartitionRun>> partitions;
   std::vector<std::unique_ptr<Worker>> workers;
+  std::vector<std::unique_ptr<Limiter>> limiters;  ///< as Plan::limits
+  std::vector<std::unique_ptr<Guard>> guards;
   Lane finisher;
 
   Rate period;  ///< seconds; zero: no streams
@@ -80,6 +83,8 @@ struct Run {
   void warn(const std::string& text);
   /// Ends the run where the caller wishes it. True: it is ending.
   bool stop_wanted();
+  /// Tells the caller of limits that were violated since it was told last. On the caller's thread.
+  void tell_violations();
 };
 
 }  // namespace bodeflow::execute

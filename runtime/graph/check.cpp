@@ -8,6 +8,7 @@
 #include "graph/condition.hpp"
 #include "graph/connections.hpp"
 #include "graph/keys.hpp"
+#include "graph/limits.hpp"
 #include "graph/requirements.hpp"
 #include "graph/run_settings.hpp"
 #include "graph/scalar.hpp"
@@ -21,9 +22,8 @@ constexpr std::int64_t kMostRepeats = 1'000'000;
 
 /// Whether outside hardware holds the block back: it is a device, and its samples come or go at the device's own rate.
 bool paces(const Block& block) {
-  const auto& roles = block.type->roles;
   const bool streams = block.type->count(BF_STREAM, BF_IN) + block.type->count(BF_STREAM, BF_OUT) > 0;
-  return streams && std::find(roles.begin(), roles.end(), "device") != roles.end();
+  return streams && block.type->has_role("device");
 }
 
 class Checker {
@@ -48,6 +48,7 @@ class Checker {
       phase.run = run_;
       read_content(root_, {}, phase);
     }
+    if (const Node* node = root_.find("limits")) read_limits(*node, graph_.phases, report_);
     if (const Node* node = root_.find("hosts")) read_hosts(*node, graph_.phases, report_);
     if (const Node* node = root_.find("summary")) graph_.summary = read_summary(*node, graph_.phases, report_);
     return std::move(graph_);
@@ -92,6 +93,7 @@ class Checker {
     if (const Node* node = item.find("run")) read_run(*node, phase.run, report_);
     if (item.find("blocks") == nullptr) report_.add(item.spot, where + "key 'blocks' is missing");
     read_content(item, graph_.phases, phase);
+    if (const Node* node = item.find("limits")) read_limits(*node, {&phase, 1}, report_);
     if (const Node* node = item.find("when")) phase.when = read_condition(*node, "when", graph_.phases, phase.name, report_);
     if (const Node* node = item.find("repeat")) read_repeat(*node, phase);
     if (Node* node = item.find("sweep")) read_sweep(*node, phase, report_);

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 3> kMergedMaps = {"requires", "variables", "blocks"};
-constexpr std::array<std::string_view, 2> kMergedLists = {"connections", "schedule"};
+constexpr std::array<std::string_view, 3> kMergedLists = {"connections", "schedule", "limits"};
 
 std::string absolute(const std::string& file) {
   std::error_code error;
@@ -60,7 +60,7 @@ class Assembler {
       if (std::any_of(kMergedMaps.begin(), kMergedMaps.end(), is)) return not_a(e, Node::Kind::map);
       if (std::any_of(kMergedLists.begin(), kMergedLists.end(), is)) return not_a(e, Node::Kind::list);
       report_.add(e.spot, fmt::format("key {} can't stand in an included file; allowed: bodeflow, include, requires, variables, "
-                                      "blocks, connections, schedule",
+                                      "blocks, connections, schedule, limits",
                                       quote(e.key)));
       return true;
     });

@@ -76,6 +76,26 @@ struct RecordedPort {
   std::uint32_t kind = BF_STREAM;
 };
 
+/// A number as written: what it is in the stream's unit is known once the stream is.
+struct Quantity {
+  std::string text;
+  Place place;
+};
+
+/// What happens when a signal leaves its limits: samples of an input are held within them; the run ends; it is only told.
+enum class OnViolation { clamp, stop, warn };
+
+/// Limits of one stream port, enforced by the runtime whatever the block does.
+struct Limit {
+  End port;
+  bool input = false;   ///< a stream input: its samples are looked at before the block gets them
+  std::string channel;  ///< name or number; "": all
+  std::optional<Quantity> min, max, rate;
+  std::optional<double> time_s;  ///< a violation must act within this
+  OnViolation on_violation = OnViolation::stop;
+  Place place, channel_place, time_place;
+};
+
 enum class Clock { simulated, realtime, hardware };
 
 /// What a paced run does when a chunk's time is over before its thread comes to it: counts it and goes on without a pause until
@@ -121,6 +141,7 @@ struct Phase {
   std::vector<Reference> references;
   std::vector<ScheduledChange> schedule;  ///< ordered by time, then as written
   std::vector<RecordedPort> recorded;
+  std::vector<Limit> limits;  ///< of one port: in the order in which they act
   RunSettings run;
   std::optional<Condition> when;
   int repeat_max = 1;

@@ -8,12 +8,12 @@ namespace bodeflow::graph {
 
 const Names& graph_keys() {
   static const Names kKeys = {"bodeflow",    "title",    "run",    "include", "requires", "variables", "blocks",
-                              "connections", "schedule", "record", "phases",  "hosts",    "summary"};
+                              "connections", "schedule", "record", "limits",  "phases",   "hosts",     "summary"};
   return kKeys;
 }
 
 const Names& phase_keys() {
-  static const Names kKeys = {"name", "blocks", "connections", "schedule", "record", "run", "when", "repeat", "sweep"};
+  static const Names kKeys = {"name", "blocks", "connections", "schedule", "record", "limits", "run", "when", "repeat", "sweep"};
   return kKeys;
 }
 
@@ -21,6 +21,16 @@ const Names& run_keys() {
   static const Names kKeys = {"clock",      "duration", "seed",  "chunk",    "latency",   "threads",
                               "on_overrun", "priority", "cores", "watchdog", "tolerance", "launcher_lost"};
   return kKeys;
+}
+
+const Names& limit_keys() {
+  static const Names kKeys = {"signal", "side", "channel", "min", "max", "rate", "time", "on_violation"};
+  return kKeys;
+}
+
+const Names& violation_actions() {
+  static const Names kActions = {"clamp", "stop", "warn"};
+  return kActions;
 }
 
 const Names& clocks() {
@@ -36,10 +46,6 @@ const Names& overruns() {
 void check_keys(const Node& map, const std::string& where, const Names& allowed, Report& report) {
   for (const auto& e : map.entries) {
     if (std::find(allowed.begin(), allowed.end(), e.key) != allowed.end()) continue;
-    if (e.key == "limits") {
-      report.add(e.spot, where + "this version has no limits: remove 'limits', nothing would enforce them");
-      continue;
-    }
     const std::string hint = did_you_mean(e.key, allowed);
     report.add(e.spot,
                fmt::format("{}unknown key {}{}", where, quote(e.key), hint.empty() ? "; allowed: " + listed(allowed) : hint));

@@ -15,6 +15,8 @@ inline constexpr int kFormat = 1;
 const Names& graph_keys();  ///< at the top of a file
 const Names& phase_keys();
 const Names& run_keys();
+const Names& limit_keys();
+const Names& violation_actions();  ///< clamp, stop, warn
 const Names& clocks();
 const Names& overruns();
 

@@ -215,6 +215,24 @@ Json schedule_definition() {
           {"items", change}};
 }
 
+Json limits_definition() {
+  Json limit = object_of(
+      {{"signal", described({{"type", "string"}}, "block.port of a stream; block where it has one stream only")},
+       {"side", described({{"enum", {"input", "output"}}}, "where a block's input and output have the same name")},
+       {"channel", described({{"type", Json::array({"string", "integer"})}}, "name or number (from 0); without it all")},
+       {"min", described(number(), "least value, in the stream's unit")},
+       {"max", described(number(), "greatest value, in the stream's unit")},
+       {"rate", described(number(), "greatest rate of change, in the stream's unit per second")},
+       {"time", described(number(), "a violation must act within this [s], or the graph is refused")},
+       {"on_violation", described(or_variable(Json::array({{{"enum", violation_actions()}}})),
+                                  "clamp (default of inputs): samples are held within the limits; stop (default of outputs): the "
+                                  "run ends; warn: it is told")}});
+  limit["required"] = {"signal"};
+  return {{"type", Json::array({"array", "null"})},
+          {"description", "what the runtime enforces on streams, whatever the blocks do"},
+          {"items", limit}};
+}
+
 Json phases_definition() {
   const Json condition = {{"type", "string"}, {"pattern", "^\\$"}, {"description", "$phase.block.port.attribute == value"}};
   Json repeat = object_of({{"max", described(integer(), "times, at most")}, {"until", condition}});
@@ -224,6 +242,7 @@ Json phases_definition() {
                           {"connections", {{"$ref", "#/definitions/connections"}}},
                           {"schedule", {{"$ref", "#/definitions/schedule"}}},
                           {"record", {{"$ref", "#/definitions/record"}}},
+                          {"limits", {{"$ref", "#/definitions/limits"}}},
                           {"run", {{"$ref", "#/definitions/run"}}},
                           {"when", condition},
                           {"repeat", repeat},
@@ -246,6 +265,7 @@ Json definitions(const Registry& registry) {
           {"schedule", schedule_definition()},
           {"record", described({{"anyOf", Json::array({{{"const", "all"}}, strings, {{"type", "null"}}})}},
                                "stream outputs kept in data.h5")},
+          {"limits", limits_definition()},
           {"phases", phases_definition()}};
 }
 
@@ -267,6 +287,7 @@ nlohmann::ordered_json schema(const Registry& registry) {
                  {"connections", reference("connections")},
                  {"schedule", reference("schedule")},
                  {"record", reference("record")},
+                 {"limits", reference("limits")},
                  {"phases", reference("phases")},
                  {"hosts", described(map_of_any, "host: [blocks]; the rest runs where the graph was started")},
                  {"summary", object_of({{"show", described(files, "results that a run prints, in this order; all otherwise")},

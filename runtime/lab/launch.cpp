@@ -159,6 +159,7 @@ class Launch {
     if (const int block = phase.block_index(ended.block); block >= 0)
       ended.status = phases::failure_of(phase.blocks[static_cast<std::size_t>(block)]);
     if (said.value("interrupted", false)) ended.status = RunResult::Status::interrupted;
+    if (said.value("limit", false)) ended.status = RunResult::Status::limit;
     ended.reason = part.name().empty() ? said.value("reason", "") : fmt::format("{}: {}", part.title(), said.value("reason", ""));
     return ended;
   }

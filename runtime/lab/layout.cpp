@@ -163,9 +163,29 @@ class LayingOut {
   Layout layout_;
 };
 
+/// A host ends when it hears of a violation on another one: no plan tells when that is.
+Problems limits_over_hosts(const graph::Phase& phase) {
+  Problems problems;
+  for (const graph::Limit& limit : phase.limits) {
+    const graph::Block& watched = phase.blocks[static_cast<std::size_t>(limit.port.block)];
+    if (limit.input || !limit.time_s || limit.on_violation != graph::OnViolation::stop) continue;
+    for (const graph::Block& block : phase.blocks)
+      if (block.type->has_role("device") && block.host != watched.host) {
+        problems.push_back(
+            {limit.time_place,
+             fmt::format("limits: '{}' must act within {}, but block '{}' is on another host, which hears of it over "
+                         "the network in no stated time; allowed: both on one host, or no 'time'",
+                         plan::stream_output(phase, limit.port), plan::seconds_text(*limit.time_s), block.name)});
+        break;
+      }
+  }
+  return problems;
+}
+
 }  // namespace
 
 tl::expected<Layout, Problems> lay_out(const graph::Phase& phase, const plan::Facts& facts, const plan::PlanOptions& options) {
+  if (Problems problems = limits_over_hosts(phase); !problems.empty()) return tl::unexpected(std::move(problems));
   auto links = plan::links_of(phase, facts);
   if (!links) return tl::unexpected(links.error());
   const std::int64_t most = plan::periods_in_chunk(facts, options, 1);

@@ -151,6 +151,11 @@ class Parting {
         change.block = local(change.block);
         part_.phase.schedule.push_back(change);
       }
+    for (graph::Limit limit : phase_.limits)
+      if (mine(limit.port.block)) {
+        limit.port = local(limit.port);
+        part_.phase.limits.push_back(std::move(limit));
+      }
     for (graph::RecordedPort recorded : phase_.recorded)
       if (mine(recorded.port.block)) {
         recorded.port = local(recorded.port);

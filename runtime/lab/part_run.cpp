@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "lab/channel.hpp"
+#include "phases/limits.hpp"
 
 namespace bodeflow::lab {
 namespace {
@@ -108,8 +109,8 @@ tl::expected<void, std::string> PartPhase::connect(const std::shared_ptr<transpo
   return {};
 }
 
-execute::Outcome PartPhase::run(const std::vector<execute::InitialRecord>& initial, record::RunDirectory& directory, int repeat,
-                                execute::Options options) {
+execute::Outcome PartPhase::run(const std::vector<execute::InitialRecord>& initial, record::RunDirectory& directory,
+                                const HostServices& services, int repeat, execute::Options options) {
   std::vector<execute::InitialRecord> mine;
   for (const execute::InitialRecord& record : initial) {
     const int block = part_.phase.block_index(whole_.blocks[static_cast<std::size_t>(record.to.block)].name);
@@ -124,7 +125,10 @@ execute::Outcome PartPhase::run(const std::vector<execute::InitialRecord>& initi
     refused.reason = sink.error();
     return refused;
   }
+  const phases::LimitTeller limits(part_.phase, repeat, plan_, directory, services);
+  options.violated = [&](int limit, const execute::Violation& violation) { limits.violated(limit, violation); };
   execute::Outcome outcome = execute::execute(part_.phase, part_.facts, plan_, instances_, mine, **sink, options);
+  limits.ended(outcome);
   if (const auto ended = directory.end_phase(outcome); !ended && outcome.status == execute::Outcome::Status::complete) {
     outcome.status = execute::Outcome::Status::partial;
     outcome.reason = ended.error();

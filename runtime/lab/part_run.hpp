@@ -25,9 +25,9 @@ class PartPhase {
   tl::expected<void, std::string> connect(const std::shared_ptr<transport::Participant>& participant, const std::string& run,
                                           int repeat, const transport::GoOn& go_on);
 
-  /// Runs the part to its end. `initial` names inputs in the whole phase.
-  execute::Outcome run(const std::vector<execute::InitialRecord>& initial, record::RunDirectory& directory, int repeat,
-                       execute::Options options);
+  /// Runs the part to its end. `initial` names inputs in the whole phase; what its limits tell goes to `services`.
+  execute::Outcome run(const std::vector<execute::InitialRecord>& initial, record::RunDirectory& directory,
+                       const HostServices& services, int repeat, execute::Options options);
 
   /// Waits until the other hosts have what was sent to them, or are lost.
   void drain(const transport::GoOn& go_on);

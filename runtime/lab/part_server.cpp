@@ -200,7 +200,7 @@ class PartServer {
     };
     running_ = true;
     work_ = std::thread([this, initial = std::move(initial), options = std::move(options)] {
-      execute::Outcome outcome = part_->run(initial, *directory_, repeat_, options);
+      execute::Outcome outcome = part_->run(initial, *directory_, *services_.host(), repeat_, options);
       if (const std::string kept = record::pacing_text(record::pacing_json(phase_->run, outcome)); !kept.empty())
         services_.host()->log("clock", BF_LOG_INFO, kept);
       const std::lock_guard lock(mutex_);
@@ -258,6 +258,7 @@ class PartServer {
     json ended = {{"event", "ended"},
                   {"complete", outcome.status == execute::Outcome::Status::complete},
                   {"interrupted", outcome.interrupted},
+                  {"limit", outcome.limit >= 0},
                   {"block", outcome.failed_block < 0 ? "" : part_->name(outcome.failed_block)},
                   {"reason", outcome.reason},
                   {"time_s", outcome.time_s},

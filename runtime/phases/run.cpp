@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "phases/condition.hpp"
+#include "phases/limits.hpp"
 #include "phases/sweep.hpp"
 #include "record/pacing.hpp"
 
@@ -29,6 +28,8 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
   execution.observer = options.watch;
   for (const PastChanges& past : options.past_changes)
     if (past.phase == phase.name && past.repeat == repeat) execution.past_changes = past.changes;
+  const LimitTeller limits(phase, repeat, prepared.plan, directory, services);
+  execution.violated = [&](int limit, const execute::Violation& violation) { limits.violated(limit, violation); };
   if (options.progress) execution.progress = [&](const execute::Progress& progress) { options.progress(phase.name, progress); };
   execute::Sink& watched =
       options.watch == nullptr ? **sink : options.watch->begin_phase(phase, repeat, prepared.facts, prepared.plan, **sink);
@@ -37,6 +38,7 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
   if (options.watch != nullptr) options.watch->end_phase();
   if (const std::string kept = record::pacing_text(record::pacing_json(phase.run, outcome)); !kept.empty())
     services.log("clock", BF_LOG_INFO, kept);
+  limits.ended(outcome);
   const auto ended = directory.end_phase(outcome);
 
   RunResult result;
@@ -46,6 +48,9 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
     for (auto& instance : prepared.instances) (void)instance.release();
   if (outcome.interrupted) {
     result.status = RunResult::Status::interrupted;
+    result.reason = outcome.reason;
+  } else if (outcome.limit >= 0) {
+    result.status = RunResult::Status::limit;
     result.reason = outcome.reason;
   } else if (outcome.status != execute::Outcome::Status::complete) {
     result.status = RunResult::Status::failed;
@@ -117,6 +122,8 @@ const char* status_word(RunResult::Status status) {
       return "complete";
     case RunResult::Status::interrupted:
       return "partial";
+    case RunResult::Status::limit:
+      return "limit";
     default:
       return "failed";
   }

@@ -29,8 +29,9 @@ struct RunOptions {
 };
 
 struct RunResult {
-  /// unreachable: a host of the lab is not there, or does not fit; device: a block of role `device` ended the run.
-  enum class Status { complete, rejected, failed, interrupted, unreachable, device };
+  /// unreachable: a host of the lab is not there, or does not fit; device: a block of role `device` ended the run; limit: a limit
+  /// of the graph did.
+  enum class Status { complete, rejected, failed, interrupted, unreachable, device, limit };
   Status status = Status::complete;
   std::string phase;  ///< in which it ended
   std::string block;  ///< whose error ended it; may be empty

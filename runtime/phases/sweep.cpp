@@ -144,6 +144,7 @@ RunResult run_sweep(const graph::Graph&, const graph::Phase& phase, record::RunD
   if (pool.failed) {
     RunResult result = failed(phase, fmt::format("run {} of the sweep failed: {}", *pool.failed, pool.message));
     if (pool.exit_code == kDeviceEnded) result.status = RunResult::Status::device;
+    if (pool.exit_code == kLimitEnded) result.status = RunResult::Status::limit;
     return result;
   }
 

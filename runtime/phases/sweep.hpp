@@ -12,6 +12,8 @@ RunResult run_sweep(const graph::Graph& graph, const graph::Phase& phase, record
 
 /// The exit code with which a worker says that a device ended its run.
 inline constexpr int kDeviceEnded = 5;
+/// And that a limit did.
+inline constexpr int kLimitEnded = 7;
 
 /// One run of a sweep, in the worker process: what `phase-worker` was asked for.
 struct WorkerTask {

@@ -114,10 +114,12 @@ nlohmann::json to_json(const graph::Phase& phase, const Facts& facts, const Plan
             {"blocks", Json::array()},
             {"buffers", Json::array()},
             {"order", Json::array()},
+            {"limits", Json::array()},
             {"threads", Json::array()}};
   for (int i = 0; i < static_cast<int>(phase.blocks.size()); ++i) json["blocks"].push_back(block_json(phase, facts, plan, i));
   for (std::size_t i = 0; i < plan.buffers.size(); ++i) json["buffers"].push_back(buffer_json(plan.buffers[i], plan.readers[i]));
   for (const int block : plan.order) json["order"].push_back(phase.blocks[block].name);
+  for (const Limit& limit : plan.limits) json["limits"].push_back(to_json(limit));
   for (const Partition& partition : plan.partitions) json["threads"].push_back(thread_json(phase, partition));
   return json;
 }

@@ -49,6 +49,9 @@ class Planner {
     if (auto scheduled = make_steps(); !scheduled) return tl::unexpected(std::move(scheduled.error()));
     place_buffers(phase_, buffers_, options_.kept, plan_);
     finish();
+    auto limits = limits_of(phase_, facts_, plan_);
+    if (!limits) return tl::unexpected(std::move(limits.error()));
+    plan_.limits = std::move(*limits);
     return std::move(plan_);
   }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "graph/graph.hpp"
+#include "plan/limits.hpp"
 #include "plugins/instance.hpp"
 
 namespace bodeflow::plan {
@@ -106,7 +107,8 @@ struct Plan {
   std::vector<std::vector<double>> initial;
   std::uint64_t bytes = 0;  ///< of all buffers and rings
   double chunk_s = 0.0;
-  double latency_s = 0.0;  ///< until a sample's chunk is full, and a chunk for each further thread; without computing time
+  double latency_s = 0.0;     ///< until a sample's chunk is full, and a chunk for each further thread; without computing time
+  std::vector<Limit> limits;  ///< as Phase::limits
   std::vector<std::string> notes;  ///< decisions that a user may wonder about (fewer threads than asked for)
 };
 
@@ -122,7 +124,7 @@ struct PlanOptions {
 std::int64_t periods_in_chunk(const Facts& facts, const PlanOptions& options, int threads);
 
 /// The plan of a phase; a value: the same input gives the same plan. Errors name deadlocked loops with their cycle and missing
-/// samples.
+/// samples, and what is wrong with limits.
 tl::expected<Plan, Problems> make_plan(const graph::Phase& phase, const Facts& facts, const PlanOptions& options);
 
 /// For people, and for scripts.

@@ -20,6 +20,7 @@ class Printer {
     head();
     for (std::size_t i = 0; i < plan_.partitions.size(); ++i) partition(i);
     buffers();
+    limits();
     for (const std::string& note : plan_.notes) line("note: {}", note);
     for (const std::string& warning : facts_.warnings) line("warning: {}", warning);
     return std::move(text_);
@@ -127,6 +128,13 @@ class Printer {
            count_text(static_cast<std::int64_t>(buffer.capacity), "sample"), count_text(buffer.channels, "channel"), more,
            bytes_text(buffer.bytes), buffer.arena_offset, buffer.partition + 1);
     }
+  }
+
+  void limits() {
+    if (plan_.limits.empty()) return;
+    line("");
+    line("limits:");
+    for (const Limit& limit : plan_.limits) line("  {}", to_text(limit));
   }
 
   const graph::Phase& phase_;

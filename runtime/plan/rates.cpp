@@ -21,10 +21,6 @@ Rate per_firing(const StreamFacts& stream, const Flow& flow) {
   return stream.known ? divide(stream.rate, Rate{flow.samples, 1}).value_or(Rate{}) : Rate{};
 }
 
-bool may_join_clocks(const BlockDescription& type) {
-  return std::find(type.roles.begin(), type.roles.end(), "resampler") != type.roles.end();
-}
-
 std::string clock_text(const std::string& clock) { return clock.empty() ? "the engine's clock" : "clock '" + clock + "'"; }
 
 /// Inputs of one block against each other: rate and clock domain.
@@ -50,7 +46,7 @@ void check_inputs(const graph::Phase& phase, const std::vector<int>& feeding, in
           {edge.place, fmt::format("{} gets {} from {}{}, {} gets {} from {}{}; put filters.hold or filters.decimate "
                                    "between",
                                    at_a, rate_text(a.rate), from_a, taken(first), at_b, rate_text(b.rate), from_b, taken(port))});
-    } else if (a.clock != b.clock && !may_join_clocks(*phase.blocks[block].type)) {
+    } else if (a.clock != b.clock && !phase.blocks[block].type->has_role("resampler")) {
       problems.push_back({edge.place, fmt::format("{} runs on {} ({}), {} on {} ({}); needs a resampler", at_a,
                                                   clock_text(a.clock), from_a, at_b, clock_text(b.clock), from_b)});
     }
@@ -72,7 +68,7 @@ void check_outputs(const graph::Phase& phase, int block, const Facts::Block& fac
 
 /// A stream changes its clock domain in a resampler alone.
 void check_clock(const graph::Phase& phase, int block, const Facts::Block& facts, Problems& problems) {
-  if (may_join_clocks(*phase.blocks[block].type)) return;
+  if (phase.blocks[block].type->has_role("resampler")) return;
   const auto input = std::find_if(facts.inputs.begin(), facts.inputs.end(), [](const StreamFacts& f) { return f.known; });
   if (input == facts.inputs.end()) return;
   for (int port = 0; port < static_cast<int>(facts.outputs.size()); ++port) {

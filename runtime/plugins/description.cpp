@@ -19,6 +19,10 @@ ParameterView::ParameterView(const ParameterValue& value) {
   c_.strings = strings_.data();
 }
 
+bool BlockDescription::has_role(std::string_view role) const {
+  return std::find(roles.begin(), roles.end(), role) != roles.end();
+}
+
 const PortDescription* BlockDescription::port(std::uint32_t direction, const std::string& name) const {
   const auto it = std::find_if(ports.begin(), ports.end(),
                                [&](const PortDescription& p) { return p.direction == direction && p.name == name; });

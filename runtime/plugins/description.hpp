@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace bodeflow {
@@ -86,6 +87,8 @@ struct BlockDescription {
 
   bool operator==(const BlockDescription&) const = default;
 
+  /// Whether the block says that it is one: "device", "actuator", "resampler" ...
+  bool has_role(std::string_view role) const;
   /// The port of that name and direction, or nullptr.
   const PortDescription* port(std::uint32_t direction, const std::string& name) const;
   /// Index in `parameters` by name or alias, or -1.

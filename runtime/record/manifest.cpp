@@ -93,7 +93,7 @@ bool Manifest::add_input(const std::string& block, const std::string& path) {
   return true;
 }
 
-void Manifest::add_phase(const graph::Phase& phase, int repeat, const execute::Outcome& outcome) {
+void Manifest::add_phase(const graph::Phase& phase, int repeat, const execute::Outcome& outcome, ordered_json limits) {
   ordered_json entry;
   entry["phase"] = phase.name;
   entry["repeat"] = repeat;
@@ -105,6 +105,7 @@ void Manifest::add_phase(const graph::Phase& phase, int repeat, const execute::O
   entry["time_s"] = outcome.time_s;
   entry["wall_s"] = outcome.wall_s;
   if (auto pacing = pacing_json(phase.run, outcome); !pacing.is_null()) entry["pacing"] = std::move(pacing);
+  if (!limits.is_null()) entry["limits"] = std::move(limits);
   ordered_json blocks = ordered_json::object();
   for (std::size_t b = 0; b < std::min(phase.blocks.size(), outcome.metrics.size()); ++b) {
     const auto& metrics = outcome.metrics[b];

@@ -22,7 +22,8 @@ class Manifest {
 
   /// The size and SHA-256 of a file that a block reads, or why it can't be read; false: it is known already.
   bool add_input(const std::string& block, const std::string& path);
-  void add_phase(const graph::Phase& phase, int repeat, const execute::Outcome& outcome);
+  /// `limits`: as limits_json gives them.
+  void add_phase(const graph::Phase& phase, int repeat, const execute::Outcome& outcome, nlohmann::ordered_json limits);
   /// How a host of a run over hosts ended its part of a phase, in its words: complete, time_s, wall_s, pacing.
   void add_host(const std::string& host, const graph::Phase& phase, int repeat, const nlohmann::json& end);
   void add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes);

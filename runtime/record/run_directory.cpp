@@ -9,6 +9,7 @@
 #include "plugins/sha256.hpp"
 #include "record/files.hpp"
 #include "record/json_text.hpp"
+#include "record/limits.hpp"
 #include "record/manifest.hpp"
 #include "record/output_files.hpp"
 #include "record/pacing.hpp"
@@ -81,6 +82,7 @@ struct RunDirectory::State {
   std::vector<std::unique_ptr<Recorder>> recorders;
   std::optional<graph::Phase> phase;  ///< the one that is open
   int repeat = 0;
+  nlohmann::json limits;  ///< of the open phase, as planned
   std::string status = "running";
   bool closed = false;
   std::string lost;  ///< the first thing that could not be written
@@ -142,7 +144,7 @@ struct RunDirectory::State {
     event("phase ends", std::move(details));
 
     const std::lock_guard lock(mutex);
-    manifest.add_phase(*phase, repeat, outcome);
+    manifest.add_phase(*phase, repeat, outcome, limits_json(limits, outcome));
     manifest.add_hashes(recorder.hashes());
     recorder.let_go();
     phase.reset();
@@ -214,6 +216,7 @@ tl::expected<execute::Sink*, std::string> RunDirectory::begin_phase(const graph:
   state.recorders.push_back(std::move(*recorder));
   state.phase = phase;
   state.repeat = repeat;
+  state.limits = plan.is_object() ? plan.value("limits", nlohmann::json()) : nlohmann::json();
   state.event("phase begins", state.phase_details());
   if (const Done planned = state.add_plan(plan); !planned) {
     state.keep_first_error(planned);

@@ -58,6 +58,19 @@ TEST_CASE("lab: a closed loop over three machines is the same bit for bit as in 
   require_same(lab, kGraphs + "closed_loop.yaml");
 }
 
+TEST_CASE("lab: a limit is enforced on the machine of its block and ends the run of all") {
+  TestLab lab;
+  lab.agent("bench");
+  const std::string limited = kPaced + std::string("limits: [{signal: motor.in, max: 0.5}, {signal: motor.out, max: 0.05}]\n");
+  Process run(lab.run(lab.folder().write("limited.yaml", limited).string(), "out"));
+  const int code = run.wait();
+  INFO(run.output());
+  CHECK(code == 7);
+  CHECK(run.output().find("host 'bench': limit violated: motor.out is ") != std::string::npos);
+  CHECK(run.output().find("motor.in is 0.53") != std::string::npos);  // told by the bench: held within
+  CHECK(nlohmann::json::parse(lab.folder().read("out/manifest.json"))["status"] == "limit");
+}
+
 TEST_CASE("lab: phases over machines hand records on as in one process") {
   TestLab lab;
   lab.agent("bench");

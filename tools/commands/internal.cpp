@@ -43,6 +43,7 @@ int work(const Session& session, WorkerCommand& command, bool seeded) {
   if (result.status == phases::RunResult::Status::complete) return kDone;
   say(result.block.empty() ? result.reason : "block '" + result.block + "': " + result.reason);
   static_assert(phases::kDeviceEnded == kDevice);
+  static_assert(phases::kLimitEnded == kLimitViolated);
   if (result.hung) std::_Exit(exit_code_of(result.status));
   return exit_code_of(result.status);
 }

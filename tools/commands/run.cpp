@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "commands/command.hpp"
+#include "commands/dry_run.hpp"
 #include "commands/lab_options.hpp"
-#include "commands/plans.hpp"
 #include "commands/run_graph.hpp"
 #include "commands/vector_level.hpp"
 #include "console/json_output.hpp"
@@ -56,15 +56,6 @@ bool read_live(const RunCommand& command, bool over_hosts, RunGraph& options) {
   return true;
 }
 
-int dry_run(const RunCommand& command, const graph::Graph& graph, Registry& registry, const phases::PlanSettings& settings) {
-  const auto prepared = phases::prepare_all(graph, registry, phases::Services(), settings);
-  if (!prepared) return command.graph.reject(prepared.error());
-  say_warnings(*prepared);
-  print_plans(graph, *prepared, command.graph.json);
-  if (!command.graph.json) fmt::print("Nothing was run.\n");
-  return kDone;
-}
-
 int run(const Session& session, const RunCommand& command) {
   RunGraph options;
   if (!command.host.empty()) {
@@ -81,7 +72,7 @@ int run(const Session& session, const RunCommand& command) {
   if (!graph) return graph.error();
   if (command.threads > 0) options.plan.threads = command.threads;
   if (command.chunk > 0) options.plan.chunk = command.chunk;
-  if (command.dry_run) return dry_run(command, *graph, registry, options.plan);
+  if (command.dry_run) return dry_run(command.graph, *graph, registry, options.plan);
 
   const bool over_hosts = lab::has_hosts(*graph) && !command.here;
   if (!read_live(command, over_hosts, options)) return kUsage;
@@ -127,7 +118,8 @@ void add_run(CLI::App& app, Session& session) {
       ->check(CLI::Range(1, 1 << 20));
   command->add_option("--isa", options->isa, "Widest vector unit of kernels (this processor's otherwise)")
       ->check(CLI::IsMember(vector_level_names()));
-  command->add_flag("--dry-run", options->dry_run, "Check and plan, show what would run, run nothing");
+  command->add_flag("--dry-run", options->dry_run,
+                    "Show plan, devices, signals, limits and the largest excitation; move nothing");
   command->add_option("--host", options->host, "Serve one run as this host of the graph, by hand, in place of an agent")
       ->type_name("NAME");
   command->add_flag("--here", options->here, "All blocks in this process, whatever hosts the graph names");

@@ -134,6 +134,8 @@ int exit_code_of(phases::RunResult::Status status) {
     case phases::RunResult::Status::unreachable:
     case phases::RunResult::Status::device:
       return kDevice;
+    case phases::RunResult::Status::limit:
+      return kLimitViolated;
     default:
       return kRunFailed;
   }

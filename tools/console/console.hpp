@@ -16,6 +16,7 @@ enum ExitCode {
   kPlugin = 4,
   kDevice = 5,  ///< or network
   kGateMissed = 6,
+  kLimitViolated = 7,
   kInterrupted = 130
 };
 

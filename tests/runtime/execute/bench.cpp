@@ -123,6 +123,20 @@ void Bench::schedule(double time_s, const std::string& block, const std::string&
   phase.schedule.push_back({time_s, index, which, value_of(type.parameters[static_cast<std::size_t>(which)], value), {}});
 }
 
+graph::Limit& Bench::limit_input(const std::string& signal) {
+  graph::Limit limit;
+  limit.port = find(signal, BF_STREAM, BF_IN);
+  limit.input = true;
+  limit.on_violation = graph::OnViolation::clamp;
+  return phase.limits.emplace_back(limit);
+}
+
+graph::Limit& Bench::limit_output(const std::string& signal) {
+  graph::Limit limit;
+  limit.port = find(signal, BF_STREAM, BF_OUT);
+  return phase.limits.emplace_back(limit);
+}
+
 void Bench::give(const std::string& to, double value) {
   RecordBuilder record("number");
   record.set("value", value);
@@ -161,6 +175,7 @@ Result Bench::run(const Cut& cut, std::vector<std::unique_ptr<Instance>>& instan
     result.streams[block.name + "." + block.type->port_at(BF_STREAM, BF_OUT, recorded.port.port).name].resize(out.channels);
   }
   result.threads = plan->partitions.size();
+  result.limits = plan->limits;
   Collector sink(phase, on_samples, result);
   execute::Options chosen = options;
   chosen.first_chunk = cut.first_chunk;

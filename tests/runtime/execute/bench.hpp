@@ -35,6 +35,7 @@ struct Changed {
 /// All that a run gave.
 struct Result {
   execute::Outcome outcome;
+  std::vector<plan::Limit> limits;                                  ///< of the plan
   std::size_t threads = 0;                                          ///< that the plan used
   std::map<std::string, std::vector<std::vector<double>>> streams;  ///< "block.port": channels
   std::map<std::string, std::vector<Sent>> records;                 ///< "block.port"
@@ -82,6 +83,9 @@ class Bench {
   /// Message output to message input, or to "b.parameters".
   void tell(const std::string& from, const std::string& to, graph::Latency latency = {});
   void schedule(double time_s, const std::string& block, const std::string& parameter, const Value& value);
+  /// A limit of a stream input, "a.in", that clamps, or of a stream output, "a.out", that stops; to be filled in.
+  graph::Limit& limit_input(const std::string& signal);
+  graph::Limit& limit_output(const std::string& signal);
   /// A number record for a message input at time zero.
   void give(const std::string& to, double value);
   void duration(double seconds) { phase.run.duration_s = seconds; }

@@ -156,6 +156,9 @@ constexpr const char* kGraph =
     "  - noise -> sum.b\n"
     "  - sum -> plant -> back -> sum.c\n"
     "  - plant -> smooth -> gain\n"
+    "limits:\n"
+    "  - {signal: gain.in, max: 0.01, rate: 10}\n"
+    "  - {signal: plant.out, min: -1000, max: 1000}\n"
     "record: all\n";
 
 struct Counted {
@@ -201,6 +204,7 @@ Counted run(int threads, std::function<void()> mischief = {}, observe::Watch* wa
   INFO(counted.outcome.reason);
   REQUIRE(counted.outcome.status == execute::Outcome::Status::complete);
   CHECK(counted.outcome.lateness.chunks >= 299);
+  CHECK(counted.outcome.limits.at(0).violations > 0);
   return counted;
 }
 

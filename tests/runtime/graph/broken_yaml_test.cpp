@@ -57,14 +57,14 @@ R"y(bodeflow: 1
 blocks: {}
 colour: red
 )y",
-R"y(g.yaml:3:1: unknown key 'colour'; allowed: bodeflow, title, run, include, requires, variables, blocks, connections, schedule, record, phases, hosts, summary)y"},
+R"y(g.yaml:3:1: unknown key 'colour'; allowed: bodeflow, title, run, include, requires, variables, blocks, connections, schedule, record, limits, phases, hosts, summary)y"},
 
-{"limits",
+{"limits that are no list",
 R"y(bodeflow: 1
 blocks: {}
 limits: {}
 )y",
-R"y(g.yaml:3:1: this version has no limits: remove 'limits', nothing would enforce them)y"},
+R"y(g.yaml:3:9: limits: found a map, allowed: a list such as [{signal: drive.current, max: 12 A}])y"},
 
 {"duplicate key",
 R"y(bodeflow: 1

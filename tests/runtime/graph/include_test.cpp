@@ -88,7 +88,7 @@ TEST_CASE("include: a problem carries the name of the file in which it stands") 
         "parts/source.yaml:3:14: block 'z': unknown block 'generators.sin' (did you mean 'generators.sine'?)\n"
         "parts/source.yaml:4:1: key 'run' can't stand in an included file; allowed: bodeflow, include, requires, variables, "
         "blocks, "
-        "connections, schedule");
+        "connections, schedule, limits");
 }
 
 TEST_CASE("include: what stands in two files is an error with both places") {

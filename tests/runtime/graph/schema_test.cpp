@@ -34,10 +34,10 @@ TEST_CASE("schema: its keys are the loader's keys") {
   for (const char* key : {"bodeflow", "title", "run", "include", "requires", "variables", "blocks", "connections", "schedule",
                           "record", "phases", "hosts"})
     CHECK(s["properties"].contains(key));
-  CHECK(s["properties"].size() == 13);
+  CHECK(s["properties"].size() == 14);
   CHECK(s["additionalProperties"] == false);
   CHECK(s["definitions"]["run"]["properties"].size() == 12);
-  CHECK(s["definitions"]["phases"]["items"]["properties"].size() == 9);
+  CHECK(s["definitions"]["phases"]["items"]["properties"].size() == 10);
 }
 
 TEST_CASE("schema: a parameter has its type, range, default, unit and live flag") {

@@ -69,6 +69,57 @@ TEST_CASE("hosts: a loop over hosts without a delay between them is refused by n
   CHECK(to_string(result.error()).find("the loop of 'sum', 'plant', 'gain' on bench goes over hosts") != std::string::npos);
 }
 
+TEST_CASE("hosts: limits are enforced where their block lies, with the same bits as in one process") {
+  Bench bench;
+  bench.add("noise", "streams.noise");
+  bench.add("sum", "streams.sum");
+  bench.add("plant", "streams.pole", {{"pole", 0.5}, {"delay", std::int64_t{3}}});
+  bench.connect("noise", "sum.in");
+  bench.connect("sum", "plant");
+  bench.connect("plant", "sum.feedback");
+  bench.duration(0.5);
+  graph::Limit& limit = bench.limit_input("plant.in");
+  limit.max = graph::Quantity{"0.2", {}};
+  limit.rate = graph::Quantity{"300", {}};
+  REQUIRE(bench.run().outcome.limits.at(0).violations > 100);
+  place(bench, {{"plant", "bench"}});
+  check_hosts(bench);
+
+  graph::Limit& measured = bench.limit_output("plant.out");
+  measured.max = graph::Quantity{"0.1", {}};
+  const Result one = bench.run();
+  const auto result = bench.run_on_hosts();
+  REQUIRE(result);
+  CHECK(one.outcome.limit == 1);
+  CHECK(result->outcome.limit == 1);
+  CHECK(result->outcome.reason == one.outcome.reason);
+  CHECK(result->stream("plant.out") == one.stream("plant.out"));
+}
+
+TEST_CASE("hosts: a limit's time is refused where a device hears of it over the network") {
+  Bench bench;
+  bench.add("noise", "streams.noise");
+  bench.add("motor", "streams.pole");
+  bench.add("card", "streams.gain");
+  bench.connect("noise", "card");
+  bench.connect("noise", "motor");
+  bench.duration(0.5);
+  BlockDescription device = *bench.phase.blocks[2].type;
+  device.roles = {"device"};
+  bench.phase.blocks[2].type = &device;
+  place(bench, {{"card", "bench"}});
+  graph::Limit& limit = bench.limit_output("motor.out");
+  limit.max = graph::Quantity{"100", {}};
+  CHECK(bench.run_on_hosts());
+  limit.time_s = 10.0;
+  const auto refused = bench.run_on_hosts();
+  REQUIRE_FALSE(refused);
+  CHECK(to_string(refused.error()).find("'motor.out' must act within 10 s, but block 'card' is on another host") !=
+        std::string::npos);
+  place(bench, {{"noise", "bench"}, {"motor", "bench"}});
+  CHECK(bench.run_on_hosts());
+}
+
 TEST_CASE("hosts: records reach other hosts at their exact time") {
   Bench bench;
   bench.add("pulse", "messages.pulse", {{"rate", 3.0}});

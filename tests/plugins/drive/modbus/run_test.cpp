@@ -133,6 +133,51 @@ TEST_CASE("run: a set point beyond its limits never reaches the drive and stops 
   CHECK(bench.fault_code() == 0);
 }
 
+TEST_CASE(
+    "run: a limit of the graph that is violated stops the motor, of a set point from its sample on, of a speed when it is read") {
+  struct Case {
+    const char* limit;
+    const char* said;
+  };
+  for (const Case& one :
+       {Case{"{signal: drive.set_points, max: 355 rpm, on_violation: stop}",
+             "limit violated: drive.set_points is 360 rpm at sample 67 (0.67 s), allowed: at most 355 rpm"},
+        Case{"{signal: drive.set_points, rate: 900 rpm/s, on_violation: stop}",
+             "limit violated: drive.set_points changes by 1000 rpm/s at "
+             "sample 32 (0.32 s), allowed: changes of at most 900 "
+             "rpm/s"},
+        Case{"{signal: drive.feedback, max: 300 rpm, time: 10 ms}", "limit violated: drive.feedback is 30"},
+        Case{"{signal: drive.feedback, rate: 10 rpm/s, time: 10 ms}", "limit violated: drive.feedback changes by "}}) {
+    DriveBench bench;
+    const Folder folder;
+    folder.write("graph.yaml", graph(bench, kLong, kRamp, kStop) + "limits:\n  - " + one.limit + "\n");
+    const auto ended = run_bodeflow({"run", "graph.yaml", "--out", "out"}, folder.path());
+    CHECK(ended.exit_code == 7);
+    CHECK_THAT(ended.err, Contains(one.said));
+    CHECK_FALSE(bench.output_stage_on());
+    CHECK(std::abs(bench.speed()) < 5.0);
+    CHECK(bench.fault_code() == 0);
+    CHECK(Json::parse(folder.read("out/manifest.json"))["status"] == "limit");
+  }
+}
+
+TEST_CASE("run: a set point that is held within its limits turns the motor no faster") {
+  DriveBench bench;
+  const Folder folder;
+  folder.write("graph.yaml", graph(bench, kPaced, kRamp, kStop) +
+                                 "limits:\n  - {signal: drive.set_points, min: 0 rpm, max: 205 rpm}\n"
+                                 "  - {signal: drive.measurements, channel: speed, min: -100 rpm, max: 300 rpm}\n");
+  const auto ended = run_bodeflow({"run", "graph.yaml", "--out", "out"}, folder.path());
+  INFO(ended.err);
+  REQUIRE(ended.exit_code == 0);
+  CHECK_THAT(ended.err, Contains("drive.set_points is 210 rpm at sample 52 (0.52 s), allowed: 0 to 205 rpm; it is held within"));
+  const Json limits = Json::parse(folder.read("out/manifest.json"))["phases"][0]["limits"];
+  CHECK(limits[0]["highest"] == 400.0);
+  CHECK(limits[1]["violations"] == 0);
+  CHECK(limits[1]["highest"].get<double>() > 150.0);
+  CHECK(bench.stops());
+}
+
 TEST_CASE("run: a command that is scheduled stops the motor within the run") {
   DriveBench bench;
   const Folder folder;

@@ -102,6 +102,9 @@ enum class Clock { simulated, realtime, hardware };
 /// it has caught up; counts it and leaves out the whole chunks of time that were lost, so that it need not catch up; ends.
 enum class Overrun { count, skip, stop };
 
+/// What stands where a lost host's samples are missing, once its part was started again.
+enum class Gaps { nan, hold };
+
 struct RunSettings {
   Clock clock = Clock::simulated;
   std::optional<double> duration_s;
@@ -115,6 +118,8 @@ struct RunSettings {
   double watchdog_s = 10.0;        ///< a graph without progress for this long is ended and named
   double tolerance_s = 10.0;       ///< between hosts: a connection without progress for this long ends the run
   bool survives_launcher = false;  ///< hosts go on with a phase when the process that started the run is lost
+  bool restart = false;            ///< the part of a host that is lost is started again
+  Gaps gaps = Gaps::nan;
 };
 
 /// `$phase.block.port.attribute OP value`, or the attribute alone (true, non-zero).

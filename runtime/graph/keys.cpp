@@ -18,8 +18,8 @@ const Names& phase_keys() {
 }
 
 const Names& run_keys() {
-  static const Names kKeys = {"clock",      "duration", "seed",  "chunk",    "latency",   "threads",
-                              "on_overrun", "priority", "cores", "watchdog", "tolerance", "launcher_lost"};
+  static const Names kKeys = {"clock",    "duration", "seed",     "chunk",     "latency",       "threads", "on_overrun",
+                              "priority", "cores",    "watchdog", "tolerance", "launcher_lost", "restart", "gaps"};
   return kKeys;
 }
 

@@ -85,6 +85,11 @@ void read_run(const Node& node, RunSettings& run, Report& report) {
   if (const Node* n = node.find("launcher_lost"))
     if (const auto name = read_choice(*n, "run: launcher_lost", {"stop", "continue"}, report))
       run.survives_launcher = *name == "continue";
+  if (const Node* n = node.find("restart"))
+    if (const auto name = read_choice(*n, "run: restart", {"true", "false"}, report)) run.restart = *name == "true";
+  if (const Node* n = node.find("gaps"))
+    if (const auto name = read_choice(*n, "run: gaps", {"nan", "hold"}, report))
+      run.gaps = *name == "hold" ? Gaps::hold : Gaps::nan;
 }
 
 }  // namespace bodeflow::graph

@@ -190,7 +190,11 @@ Json run_definition() {
        {"watchdog", described(number(), "a graph without progress for this long [s] is ended")},
        {"tolerance", described(number(), "a connection between hosts without progress for this long [s] ends the run")},
        {"launcher_lost", described(or_variable(Json::array({{{"enum", {"stop", "continue"}}}})),
-                                   "what hosts do when the process that started the run is lost")}});
+                                   "what hosts do when the process that started the run is lost")},
+       {"restart", described({{"type", "boolean"}},
+                             "the part of a host that is lost is started again; what is missing is told to the sample")},
+       {"gaps", described(or_variable(Json::array({{{"enum", {"nan", "hold"}}}})),
+                          "restart: the samples that are missing are no number, or repeat the last one that came")}});
 }
 
 Json connections_definition() {

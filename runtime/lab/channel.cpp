@@ -22,9 +22,12 @@ transport::Edge edge(const std::string& topic) {
 
 }  // namespace
 
-transport::Edge edge_of(const std::string& run, const std::string& phase, int repeat, std::size_t cut, double tolerance_s,
+std::string part_name(const std::string& run, int epoch) { return epoch == 0 ? run : fmt::format("{}-{}", run, epoch); }
+
+transport::Edge edge_of(const LinksName& links, const std::string& phase, int repeat, std::size_t cut, double tolerance_s,
                         std::uint64_t queue_bytes) {
-  transport::Edge made = edge(fmt::format("bodeflow/{}/{}@{}/{}", run, phase, repeat, cut));
+  transport::Edge made = edge(fmt::format("bodeflow/{}/{}@{}/{}", links.name, phase, repeat, cut));
+  made.epoch = links.epoch;
   made.tolerance_s = tolerance_s;
   made.queue_bytes = queue_bytes;
   return made;

@@ -36,8 +36,19 @@ class Channel {
   std::unique_ptr<transport::Inlet> inlet_;
 };
 
+/// Processes for one host's part of a run, at most: the first and those that go on for a lost one.
+inline constexpr int kMostParts = 4;
+/// The name of a part's process: that of the run, and how often a lost one was started again.
+std::string part_name(const std::string& run, int epoch);
+
+/// The links of a run between its parts: a name for all of them, and how often a part was started again before.
+struct LinksName {
+  std::string name;
+  std::uint32_t epoch = 0;
+};
+
 /// The edge of a cut: phase and repetition count on.
-transport::Edge edge_of(const std::string& run, const std::string& phase, int repeat, std::size_t cut, double tolerance_s,
+transport::Edge edge_of(const LinksName& links, const std::string& phase, int repeat, std::size_t cut, double tolerance_s,
                         std::uint64_t queue_bytes);
 
 }  // namespace bodeflow::lab

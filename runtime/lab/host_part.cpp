@@ -37,8 +37,8 @@ Done HostPart::hear(double seconds) {
     heard_ = Clock::now();
     return take(std::move(**heard));
   }
-  const double silent = std::chrono::duration<double>(Clock::now() - heard_).count();
-  if (silent > lost_s_) return tl::unexpected(fmt::format("{} is lost: nothing was heard of it for {:.0f} s", title(), silent));
+  if (silent_s() > lost_s_)
+    return tl::unexpected(fmt::format("{} is lost: nothing was heard of it for {:.0f} s", title(), silent_s()));
   return {};
 }
 
@@ -59,6 +59,9 @@ Done HostPart::take(Channel::Heard heard) {
     log_(name_, said.value("block", ""), said.value("level", 1), said.value("text", ""));
   } else if (event == "state") {
     state_ = said;
+  } else if (event == "gap") {
+    gaps_.push_back(said);
+    gaps_.back().erase("event");
   } else if (event == "ended") {
     if (!said.contains("records") || !said["records"].is_array())
       return tl::unexpected(title() + " ended a phase without records");

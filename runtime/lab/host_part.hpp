@@ -36,6 +36,10 @@ class HostPart {
   const std::vector<SharedRecord>& records() const { return records_; }
   /// Before a phase runs.
   void forget_end();
+  /// Seconds since it said something.
+  double silent_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - heard_).count(); }
+  /// Samples that are missing on its connections, told since the last call: {"connection", "first", "count", "epoch"}.
+  std::vector<nlohmann::json> take_gaps() { return std::exchange(gaps_, {}); }
 
   /// Files that come are written below this folder, which is made.
   void collect_into(std::filesystem::path folder) { folder_ = std::move(folder); }
@@ -63,6 +67,7 @@ class HostPart {
   std::optional<nlohmann::json> answer_;
   nlohmann::json state_, ended_;
   std::vector<SharedRecord> records_;
+  std::vector<nlohmann::json> gaps_;
   std::filesystem::path folder_;
   std::vector<File> files_;
   std::size_t next_file_ = 0;

@@ -17,6 +17,8 @@ using Done = tl::expected<void, std::string>;
 
 constexpr double kWaitForAgents_s = 5.0, kWaitForParts_s = 15.0;
 constexpr double kBeat_s = 0.5;
+/// A part says something five times a second.
+constexpr double kVanished_s = 1.0;
 
 tl::unexpected<Ended> failed(std::string reason) {
   return tl::unexpected(Ended{RunResult::Status::failed, "", std::move(reason), {}});
@@ -46,7 +48,8 @@ Done HostParts::begin() {
   std::erase(others, "");
   auto lab = Lab::watch(participant_);
   if (!lab) return tl::unexpected(lab.error());
-  auto agents = (*lab)->wait_for(others, kWaitForAgents_s, [this] { return !stopped(); });
+  lab_ = std::move(*lab);
+  auto agents = lab_->wait_for(others, kWaitForAgents_s, [this] { return !stopped(); });
   if (!agents) return tl::unexpected(agents.error());
   for (const AgentInfo& agent : *agents)
     if (auto fits = check(agent); !fits)
@@ -56,7 +59,8 @@ Done HostParts::begin() {
     if (auto started = start(host); !started) return started;
   for (auto& part : parts_)
     if (auto connected = connect(*part); !connected) return connected;
-  if (auto greeted = greet(); !greeted) return greeted;
+  for (auto& part : parts_)
+    if (auto greeted = greet(*part); !greeted) return tl::unexpected(greeted.error().reason);
   directory_.event("hosts", {{"run", run_}, {"hosts", hosts}});
   return {};
 }
@@ -86,42 +90,79 @@ Done HostParts::check(const AgentInfo& agent) const {
   return {};
 }
 
-Done HostParts::start(const std::string& host) {
-  auto channel = Channel::open(participant_, run_, host, true);
+tl::expected<std::unique_ptr<HostPart>, std::string> HostParts::open(const std::string& host) {
+  auto channel = Channel::open(participant_, part_name(run_, epoch(host)), host, true);
   if (!channel) return tl::unexpected(channel.error());
-  parts_.push_back(std::make_unique<HostPart>(host, std::move(*channel), tolerance_s_,
-                                              [this](const auto& where, const auto& block, int level, const auto& text) {
-                                                directory_.log(where.empty() ? block : where + ": " + block, level, text);
-                                                if (options_.log) options_.log(where, block, level, text);
-                                              }));
+  return std::make_unique<HostPart>(host, std::move(*channel), tolerance_s_,
+                                    [this](const auto& where, const auto& block, int level, const auto& text) {
+                                      directory_.log(where.empty() ? block : where + ": " + block, level, text);
+                                      if (options_.log) options_.log(where, block, level, text);
+                                    });
+}
+
+Done HostParts::start(const std::string& host) {
+  auto part = open(host);
+  if (!part) return tl::unexpected(part.error());
+  parts_.push_back(std::move(*part));
   parts_.back()->collect_into(directory_.path() / "hosts" / (host.empty() ? "launcher" : host));
   if (!host.empty()) return ask_for_part(participant_, host, run_, kWaitForAgents_s);
   return own_.start(options_.part_command, part_options(run_, "", directory_.path() / "own_part", options_.settings));
 }
 
+bool HostParts::has_vanished(const HostPart& part) const {
+  if (part.name().empty() || part.silent_s() < kVanished_s) return false;
+  const std::string run = part_name(run_, epoch(part.name()));
+  const std::vector<AgentInfo> agents = lab_->agents();
+  // One that was killed may still be shown beside the one that came in its place.
+  return std::any_of(agents.begin(), agents.end(), [&](const AgentInfo& agent) {
+    return agent.name == part.name() && std::find(agent.runs.begin(), agent.runs.end(), run) == agent.runs.end();
+  });
+}
+
+tl::expected<HostPart*, Ended> HostParts::start_again(HostPart& lost) {
+  const std::string host = lost.name();
+  const int epoch = ++epochs_[host];
+  auto part = open(host);
+  if (!part) return failed(part.error());
+  auto& place = *std::find_if(parts_.begin(), parts_.end(), [&](const auto& p) { return p.get() == &lost; });
+  lose(lost);
+  lost_.push_back(std::exchange(place, std::move(*part)));
+  // What was recorded in pieces is not joined with what the other hosts have: it lies beside.
+  place->collect_into(directory_.path() / "restarted" / host);
+  // No receipt comes as long as the network believes in the reader of an agent that was killed; that the part comes tells enough.
+  requests_.push_back(std::async(std::launch::async, [participant = participant_, host, name = part_name(run_, epoch)] {
+    (void)ask_for_part(participant, host, name, kWaitForAgents_s);
+  }));
+  gone_.insert(place.get());  // it can't be told anything before it has come
+  if (auto connected = connect(*place); !connected) return failed(connected.error());
+  gone_.erase(place.get());
+  if (auto greeted = greet(*place); !greeted) return tl::unexpected(greeted.error());
+  return place.get();
+}
+
 Done HostParts::connect(HostPart& part) {
   const auto until = Clock::now() + std::chrono::duration<double>(kWaitForParts_s);
-  auto connected =
-      part.channel().connect([&] { return !stopped() && Clock::now() < until && (!part.name().empty() || own_.runs()); });
+  const auto goes_on = [&] {
+    if (epoch(part.name()) > 0) (void)beat();  // the others run
+    return !stopped() && Clock::now() < until && (!part.name().empty() || own_.runs());
+  };
+  auto connected = part.channel().connect(goes_on);
   if (!connected) return tl::unexpected(fmt::format("{} did not start its part: {}", part.title(), connected.error()));
   return {};
 }
 
-/// Gives all parts the graph and what holds for the whole run.
-Done HostParts::greet() {
+/// Gives a part the graph and what holds for the whole run.
+tl::expected<void, Ended> HostParts::greet(HostPart& part) {
   json begin = {{"do", "begin"},
                 {"graph", graph_.expanded},
                 {"file", graph_.file},
                 {"name", std::filesystem::path(graph_.file).stem().string()},
-                {"manifest", {{"run", run_}}},
+                {"manifest", {{"run", run_}, {"host", part.name()}, {"epoch", epoch(part.name())}}},
                 {"tolerance_s", tolerance_s_},
                 {"vector_level", options_.vector_level}};
   if (options_.plan.chunk) begin["chunk"] = *options_.plan.chunk;
   if (options_.plan.threads) begin["threads"] = *options_.plan.threads;
-  for (auto& part : parts_) {
-    begin["manifest"]["host"] = part->name();
-    if (auto answer = ask(*part, begin); !answer) return tl::unexpected(answer.error().reason);
-  }
+  if (auto answer = ask(part, begin); !answer) return tl::unexpected(answer.error());
   return {};
 }
 

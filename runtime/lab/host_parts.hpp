@@ -1,5 +1,6 @@
 #pragma once
 
+#include <future>
 #include <set>
 
 #include "lab/host_part.hpp"
@@ -36,8 +37,20 @@ class HostParts {
   bool is_gone(const HostPart& part) const { return gone_.count(&part) > 0; }
   void lose(const HostPart& part) { gone_.insert(&part); }
 
+  /// Whether the part's process has gone although its host's agent is there.
+  bool has_vanished(const HostPart& part) const;
+  /// Starts another process in place of a lost part's, and gives it the graph: that part. Error: it can't be had.
+  tl::expected<HostPart*, Ended> start_again(HostPart& lost);
+  /// How often the part of a host was started again.
+  int epoch(const std::string& host) const {
+    const auto found = epochs_.find(host);
+    return found == epochs_.end() ? 0 : found->second;
+  }
+
   /// The answer of a host. Error: it is lost, or what it refuses.
   tl::expected<nlohmann::json, Ended> ask(HostPart& part, const nlohmann::json& question);
+  /// The answer to what was said to it last.
+  tl::expected<nlohmann::json, Ended> wait_for_answer(HostPart& part);
   /// Asks all hosts, then waits for all answers.
   tl::expected<void, Ended> ask_all(const nlohmann::json& question);
   tl::expected<void, std::string> tell_all(const nlohmann::json& message);
@@ -52,8 +65,8 @@ class HostParts {
   tl::expected<void, std::string> check(const AgentInfo& agent) const;
   tl::expected<void, std::string> start(const std::string& host);
   tl::expected<void, std::string> connect(HostPart& part);
-  tl::expected<void, std::string> greet();
-  tl::expected<nlohmann::json, Ended> wait_for_answer(HostPart& part);
+  tl::expected<std::unique_ptr<HostPart>, std::string> open(const std::string& host);
+  tl::expected<void, Ended> greet(HostPart& part);
   tl::expected<void, std::string> collect(HostPart& part, const phases::RunResult& result);
 
   const graph::Graph& graph_;
@@ -63,8 +76,11 @@ class HostParts {
   const std::string run_ = new_name();
   double tolerance_s_ = 0.0;  ///< the longest silence of a host that any phase bears
   std::shared_ptr<transport::Participant> participant_;
+  std::unique_ptr<Lab> lab_;
   OwnPart own_;
-  std::vector<std::unique_ptr<HostPart>> parts_;
+  std::vector<std::unique_ptr<HostPart>> parts_, lost_;
+  std::map<std::string, int> epochs_;  ///< by host
+  std::vector<std::future<void>> requests_;
   std::set<const HostPart*> gone_;
   std::chrono::steady_clock::time_point beaten_;
 };

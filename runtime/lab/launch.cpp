@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "lab/facts_json.hpp"
-#include "lab/host_parts.hpp"
+#include "lab/restart.hpp"
 #include "lab/split.hpp"
 #include "plan/facts.hpp"
 
@@ -61,7 +61,7 @@ class Launch {
     const auto initial = phases::initial_records(phase, directory_);
     if (!initial) return phases::rejection(phase, initial.error());
     auto ended = prepare(index, repeat);
-    if (ended) ended = execute(phase, repeat, *initial);
+    if (ended) ended = execute({phase, index, repeat, facts_, *initial, {}});
     if (ended) return {};
     Ended& why = ended.error();
     return {why.status, phase.name, std::move(why.block), std::move(why.reason), std::move(why.problems), false};
@@ -72,9 +72,10 @@ class Launch {
     if (auto made = hosts_.ask_all({{"do", "phase"}, {"phase", index}, {"repeat", repeat}}); !made) return made;
     const auto facts = facts_of(graph_.phases[index]);
     if (!facts) return tl::unexpected(facts.error());
+    facts_ = *facts;
     for (const std::string& warning : facts->warnings) warn("graph", warning);
     if (auto prepared = hosts_.ask_all({{"do", "prepare"}, {"facts", to_json(*facts)}}); !prepared) return prepared;
-    return hosts_.ask_all({{"do", "connect"}});
+    return hosts_.ask_all({{"do", "connect"}, {"links", hosts_.run()}, {"epoch", 0}});
   }
 
   tl::expected<plan::Facts, Ended> facts_of(const graph::Phase& phase) {
@@ -97,29 +98,21 @@ class Launch {
     return std::move(*facts);
   }
 
-  tl::expected<void, Ended> execute(const graph::Phase& phase, int repeat, const std::vector<execute::InitialRecord>& initial) {
-    directory_.event("phase begins", {{"phase", phase.name}, {"repeat", repeat}});
-    if (auto started = start(phase, repeat, initial); !started)
-      return tl::unexpected(Ended{RunResult::Status::failed, "", started.error(), {}});
-    auto ended = watch(phase);
-    keep_results(phase, repeat);
+  tl::expected<void, Ended> execute(RunningPhase running) {
+    directory_.event("phase begins", {{"phase", running.phase.name}, {"repeat", running.repeat}});
+    for (auto& part : hosts_.all()) {
+      part->forget_end();
+      if (auto begun = begin_phase(*part, running.initial, phases::seed_of(running.phase, running.repeat)); !begun)
+        return tl::unexpected(Ended{RunResult::Status::failed, "", begun.error(), {}});
+    }
+    running.started = Clock::now();
+    auto ended = watch(running);
+    keep_results(running.phase, running.repeat);
     return ended;
   }
 
-  Done start(const graph::Phase& phase, int repeat, const std::vector<execute::InitialRecord>& initial) {
-    json list = json::array();
-    for (const execute::InitialRecord& record : initial) list.push_back({record.to.block, record.to.port});
-    for (auto& part : hosts_.all()) {
-      part->forget_end();
-      for (const execute::InitialRecord& record : initial)
-        if (auto sent = part->send({reinterpret_cast<const std::byte*>(record.record.bytes()), record.record.size()}); !sent)
-          return sent;
-    }
-    return hosts_.tell_all({{"do", "run"}, {"initial", list}, {"seed", phases::seed_of(phase, repeat)}});
-  }
-
   /// Until all hosts have ended the phase; the first failure stops the others.
-  tl::expected<void, Ended> watch(const graph::Phase& phase) {
+  tl::expected<void, Ended> watch(const RunningPhase& running) {
     std::optional<Ended> why;
     Clock::time_point stopping;
     const auto runs = [&](const HostPart& part) { return !hosts_.is_gone(part) && !part.has_ended(); };
@@ -135,21 +128,59 @@ class Launch {
       bool any = false;
       for (auto& part : hosts_.all()) {
         if (!runs(*part)) continue;
+        if (!why && running.phase.run.restart && hosts_.has_vanished(*part))
+          if (auto restarted = start_again(*part, running); !restarted)
+            end_all(hosts_.stopped() ? Ended{RunResult::Status::interrupted, "", "interrupted", {}} : restarted.error());
+        if (!runs(*part)) continue;
         if (auto heard = part->hear(0.02); !heard) {
           hosts_.lose(*part);
           end_all({RunResult::Status::failed, "", heard.error(), {}});
         } else if (part->has_ended() && !part->ended().value("complete", false)) {
-          end_all(end_of(phase, *part));
+          end_all(end_of(running.phase, *part));
         }
+        note_gaps(*part);
         any = any || runs(*part);
       }
       if (!any) break;
       if (auto beaten = hosts_.beat(); !beaten) end_all({RunResult::Status::failed, "", beaten.error(), {}});
       if (why && std::chrono::duration<double>(Clock::now() - stopping).count() > kWaitForStop_s) break;
-      show(phase);
+      show(running.phase);
     }
+    for (auto& part : hosts_.all()) note_gaps(*part);
     if (why) return tl::unexpected(*why);
     return {};
+  }
+
+  tl::expected<void, Ended> start_again(HostPart& lost, const RunningPhase& running) {
+    const std::string host = lost.name();
+    note_gaps(lost);
+    if (hosts_.epoch(host) + 1 == kMostParts) {
+      hosts_.lose(lost);
+      return tl::unexpected(
+          Ended{RunResult::Status::failed,
+                "",
+                fmt::format("host '{}' is lost for the {}th time in this run: it is not started again", host, kMostParts),
+                {}});
+    }
+    warn(host, "its part has gone; it is started again");
+    directory_.event("host lost", {{"phase", running.phase.name}, {"host", host}, {"time_s", lost.state().value("time_s", 0.0)}});
+    const auto begin_s = restart(hosts_, lost, running);
+    if (!begin_s) return tl::unexpected(begin_s.error());
+    directory_.note_restart(
+        {{"phase", running.phase.name}, {"host", host}, {"epoch", hosts_.epoch(host)}, {"begin_s", *begin_s}});
+    warn(host, fmt::format("goes on at {:.6g} s, with blocks that have forgotten what was before; what it records is not joined "
+                           "with the rest, it lies in restarted/{}",
+                           *begin_s, host));
+    return {};
+  }
+
+  void note_gaps(HostPart& part) {
+    for (json& gap : part.take_gaps()) {
+      gap["host"] = part.name();
+      directory_.note_gap(gap);
+      warn(gap.value("connection", ""),
+           fmt::format("{} samples are missing from sample {} on", gap.value("count", 0U), gap.value("first", 0U)));
+    }
   }
 
   static Ended end_of(const graph::Phase& phase, const HostPart& part) {
@@ -227,6 +258,7 @@ class Launch {
   record::RunDirectory& directory_;
   const LaunchOptions& options_;
   HostParts hosts_;
+  plan::Facts facts_;  ///< of the phase that runs
   std::set<std::string> stalled_;
   std::unique_ptr<transport::Board> board_;
   Clock::time_point shown_;

@@ -40,6 +40,7 @@ class LayingOut {
       layout_.steps = std::move(steps);
       add_cuts();
       layout_.end = end();
+      if (auto problem = restart_problem()) return tl::unexpected(Problems{*problem});
       return std::move(layout_);
     }
     return tl::unexpected(Problems{loop_problem()});
@@ -112,6 +113,24 @@ class LayingOut {
                 names, plan::seconds_text(facts_.period.hz()))};
   }
 
+  /// What a part can't be started again with.
+  std::optional<Problem> restart_problem() const {
+    if (!phase_.run.restart) return {};
+    for (const Cut& cut : layout_.cuts) {
+      if (cut.message)
+        return Problem{phase_.messages[static_cast<std::size_t>(cut.edge)].place,
+                       fmt::format("run: restart: records go over hosts from {}: those that a lost host did not send can't be "
+                                   "told; put both blocks on one host, or take 'restart' away",
+                                   cut.name)};
+      if (cut.ahead && phase_.run.gaps == graph::Gaps::nan)
+        return Problem{phase_.streams[static_cast<std::size_t>(cut.edge)].place,
+                       fmt::format("run: restart: {} closes a loop over hosts, in which samples that are no number never end; "
+                                   "'gaps: hold' repeats the last one in place of those that are missing",
+                                   cut.name)};
+    }
+    return {};
+  }
+
   void add_cuts() {
     for (const Link& link : links_) {
       if (!crosses(link)) continue;
@@ -137,6 +156,7 @@ class LayingOut {
     const Flow& flow = to.input_flows[static_cast<std::size_t>(edge.to.port)];
     cut.delay = flow.delay;
     cut.initial = flow.initial;
+    cut.gaps = phase_.run.gaps;
   }
 
   void describe_records(const Link& link, Cut& cut) const {

@@ -66,13 +66,19 @@ tl::expected<void, Problems> PartPhase::prepare(const plan::Facts& facts, const 
   return {};
 }
 
-tl::expected<void, std::string> PartPhase::open(const PartEnd& end, const std::shared_ptr<transport::Participant>& participant,
-                                                const transport::Edge& edge, const transport::GoOn& go_on) {
+transport::Edge PartPhase::edge(const PartEnd& end, const LinksName& links, int repeat) const {
   const Cut& cut = layout_.cuts[static_cast<std::size_t>(end.cut)];
-  const std::string& name = part_.phase.blocks[static_cast<std::size_t>(end.block)].name;
-  const auto failed = [&](const transport::Failure& failure) { return tl::unexpected(text_of(cut, failure)); };
-  Link link{cut.name, end.sends ? cut.to_host : cut.from_host, end.sends};
-  MadeEnd made;
+  return edge_of(links, whole_.name, repeat, static_cast<std::size_t>(end.cut), whole_.run.tolerance_s,
+                 queue_bytes(cut, part_.facts.period, layout_.periods));
+}
+
+tl::expected<NewLink, std::string> PartPhase::new_link(const PartEnd& end,
+                                                       const std::shared_ptr<transport::Participant>& participant,
+                                                       const transport::Edge& edge, const transport::GoOn& go_on) const {
+  const auto failed = [&](const transport::Failure& failure) {
+    return tl::unexpected(text_of(layout_.cuts[static_cast<std::size_t>(end.cut)], failure));
+  };
+  NewLink link;
   if (end.sends) {
     auto outlet = transport::open_outlet(participant, edge);
     if (!outlet) return failed(outlet.error());
@@ -80,15 +86,33 @@ tl::expected<void, std::string> PartPhase::open(const PartEnd& end, const std::s
     for (int more = 1; more < kConnects && !connected && connected.error().kind == transport::Failure::Kind::tolerance; ++more)
       connected = (*outlet)->connect(go_on);
     if (!connected) return failed(connected.error());
-    link.outlet = outlet->get();
-    made = cut.message ? make_record_outlet(name, cut, std::move(*outlet)) : make_sample_outlet(name, cut, std::move(*outlet));
+    link.outlet = std::move(*outlet);
   } else {
     auto inlet = transport::open_inlet(participant, edge);
     if (!inlet) return failed(inlet.error());
-    link.inlet = inlet->get();
-    made = cut.message ? make_record_inlet(name, cut, part_.facts.period, std::move(*inlet))
-                       : make_sample_inlet(name, cut, std::move(*inlet));
+    link.inlet = std::move(*inlet);
   }
+  link.epoch = edge.epoch;
+  return link;
+}
+
+tl::expected<void, std::string> PartPhase::open(const PartEnd& end, const std::shared_ptr<transport::Participant>& participant,
+                                                const transport::Edge& edge, const transport::GoOn& go_on) {
+  const Cut& cut = layout_.cuts[static_cast<std::size_t>(end.cut)];
+  const std::string& name = part_.phase.blocks[static_cast<std::size_t>(end.block)].name;
+  auto opened = new_link(end, participant, edge, go_on);
+  if (!opened) return tl::unexpected(opened.error());
+  Link link{cut.name, end.sends ? cut.to_host : cut.from_host, end.sends, opened->outlet.get(), opened->inlet.get(), end, {}, {}};
+  MadeEnd made;
+  if (end.sends)
+    made = cut.message ? make_record_outlet(name, cut, std::move(opened->outlet))
+                       : make_sample_outlet(name, cut, std::move(opened->outlet));
+  else
+    made = cut.message ? make_record_inlet(name, cut, part_.facts.period, std::move(opened->inlet))
+                       : make_sample_inlet(name, cut, std::move(opened->inlet));
+  link.stream = made.stream;
+  if (made.stream && tell_gap_)
+    made.stream->on_gap([this, connection = cut.name](const Gap& gap) { tell_gap_(connection, gap); });
   instances_[static_cast<std::size_t>(end.block)] = std::move(made.instance);
   ends_[end.block] = std::move(made.end);
   links_.push_back(std::move(link));
@@ -96,16 +120,67 @@ tl::expected<void, std::string> PartPhase::open(const PartEnd& end, const std::s
 }
 
 tl::expected<void, std::string> PartPhase::connect(const std::shared_ptr<transport::Participant>& participant,
-                                                   const std::string& run, int repeat, const transport::GoOn& go_on) {
+                                                   const LinksName& links, int repeat, const transport::GoOn& go_on) {
   // Readers first: a writer waits for its reader, and two hosts that wait for each other's writers would wait for good.
   for (const bool sends : {false, true})
     for (const PartEnd& end : part_.ends) {
       if (end.sends != sends) continue;
-      const Cut& cut = layout_.cuts[static_cast<std::size_t>(end.cut)];
-      const auto edge = edge_of(run, whole_.name, repeat, static_cast<std::size_t>(end.cut), whole_.run.tolerance_s,
-                                queue_bytes(cut, part_.facts.period, layout_.periods));
-      if (auto opened = open(end, participant, edge, go_on); !opened) return opened;
+      if (auto opened = open(end, participant, edge(end, links, repeat), go_on); !opened) return opened;
     }
+  return {};
+}
+
+tl::expected<void, Problems> PartPhase::begin_at(std::int64_t period) {
+  layout_.end = begin_part_at(part_, layout_.end, period);
+  auto plan = plan::make_plan(part_.phase, part_.facts, part_.options);
+  if (!plan) return tl::unexpected(plan.error());
+  plan_ = std::move(*plan);
+  for (const Link& link : links_)
+    if (link.stream) link.stream->begin_at(static_cast<std::uint64_t>(period * samples_of(link.end)));
+  return {};
+}
+
+tl::expected<std::int64_t, std::string> PartPhase::leave(const std::string& host) {
+  std::int64_t period = 0;
+  for (const Link& link : links_) {
+    if (!link.stream) return tl::unexpected("records go over " + link.name);
+    link.stream->pause(true);
+    if (link.host != host) continue;
+    const auto sample = link.stream->leave();
+    if (!sample) return tl::unexpected(sample.error());
+    const std::int64_t samples = samples_of(link.end);
+    period = std::max(period, (static_cast<std::int64_t>(*sample) + samples - 1) / samples);
+  }
+  return period;
+}
+
+tl::expected<void, std::string> PartPhase::rejoin(const std::string& host,
+                                                  const std::shared_ptr<transport::Participant>& participant,
+                                                  const LinksName& links, int repeat, const transport::GoOn& go_on) {
+  for (const bool sends : {false, true})
+    for (Link& link : links_) {
+      if (link.host != host || link.sends != sends) continue;
+      auto made = new_link(link.end, participant, edge(link.end, links, repeat), go_on);
+      if (!made) return tl::unexpected(made.error());
+      link.next = std::move(*made);
+    }
+  return {};
+}
+
+tl::expected<void, std::string> PartPhase::go_on(const std::string& host, std::int64_t period, const transport::GoOn& go_on) {
+  for (Link& link : links_) {
+    if (link.host == host) {
+      {
+        const std::lock_guard lock(links_mutex_);
+        link.outlet = link.next.outlet.get();
+        link.inlet = link.next.inlet.get();
+      }
+      const auto sample = static_cast<std::uint64_t>(period * samples_of(link.end));
+      if (auto joined = link.stream->rejoin(std::move(link.next), sample, go_on); !joined)
+        return tl::unexpected(text_of(layout_.cuts[static_cast<std::size_t>(link.end.cut)], joined.error()));
+    }
+    link.stream->pause(false);
+  }
   return {};
 }
 
@@ -143,6 +218,7 @@ void PartPhase::drain(const transport::GoOn& go_on) {
 
 nlohmann::json PartPhase::links() const {
   nlohmann::json list = nlohmann::json::array();
+  const std::lock_guard lock(links_mutex_);
   for (const Link& link : links_) {
     const transport::EdgeState state = link.sends ? link.outlet->state() : link.inlet->state();
     list.push_back({{"connection", link.name},

@@ -73,7 +73,8 @@ class PartServer {
       if (since_heard() > lost_s_) return lost(fmt::format("nothing was heard of the launcher for {} s", lost_s_));
     }
     std::error_code error;
-    if (fetched_) std::filesystem::remove_all(task_.directory, error);
+    for (const auto& [name, folder] : folders())
+      if (fetched_) std::filesystem::remove_all(folder, error);
     channel_->drain(2.0);
     return {};
   }
@@ -125,6 +126,10 @@ class PartServer {
     if (wish == "resolve") return resolve(said);
     if (wish == "prepare") return prepare(said);
     if (wish == "connect") return connect(said);
+    if (wish == "begin_at") return begin_at(said);
+    if (wish == "leave") return leave(said);
+    if (wish == "rejoin") return rejoin(said);
+    if (wish == "go_on") return go_on(said);
     if (wish == "run") return run(said);
     return {{"error", fmt::format("host '{}' does not know what '{}' is", task_.host, wish)}};
   }
@@ -149,9 +154,15 @@ class PartServer {
     phase_ = &graph_->phases.at(said.at("phase").get<std::size_t>());
     repeat_ = said.at("repeat").get<int>();
     complete_ = false;
+    begin_s_ = 0.0;
     auto made = PartPhase::make(*phase_, task_.host, registry_, services_);
     if (!made) return problems_answer(made.error());
     part_ = std::move(*made);
+    part_->on_gap([this](const std::string& connection, const Gap& gap) {
+      const std::lock_guard lock(mutex_);
+      news_.push_back(
+          {{"event", "gap"}, {"connection", connection}, {"first", gap.first}, {"count", gap.count}, {"epoch", gap.epoch}});
+    });
     return {{"ok", true}};
   }
 
@@ -164,21 +175,65 @@ class PartServer {
   json prepare(const json& said) {
     auto prepared = part_->prepare(facts_from(said.at("facts")), phases::plan_options(*phase_, plan_), services_);
     if (!prepared) return problems_answer(prepared.error());
-    return {{"ok", true}};
+    return {{"chunk", part_->periods_of_a_chunk()}, {"period_s", part_->seconds_of(1)}};
   }
 
-  /// In the background: the launcher is answered when all links are there.
-  json connect(const json&) {
+  json connect(const json& said) {
     join_work();
     stop_phase_ = false;
-    work_ = std::thread([this] {
-      const auto connected = part_->connect(participant_, task_.run, repeat_, [this] { return !stop_ && !stop_phase_; });
-      json answer = {{"answer", "connect"}, {"ok", true}};
-      if (!connected) answer = {{"answer", "connect"}, {"error", connected.error()}};
+    work_ = in_background("connect", [this, links = links_of(said)] {
+      return part_->connect(participant_, links, repeat_, [this] { return !stop_ && !stop_phase_; });
+    });
+    return nullptr;
+  }
+
+  /// The launcher is answered when it is done.
+  template <class Work>
+  std::thread in_background(const char* wish, Work work) {
+    return std::thread([this, wish, work = std::move(work)] {
+      const auto done = work();
+      json answer = {{"answer", wish}, {"ok", true}};
+      if (!done) answer = {{"answer", wish}, {"error", done.error()}};
       const std::lock_guard lock(mutex_);
       news_.push_back(std::move(answer));
     });
+  }
+
+  static LinksName links_of(const json& said) {
+    return {said.at("links").get<std::string>(), said.at("epoch").get<std::uint32_t>()};
+  }
+
+  /// Of a part that goes on for a lost one.
+  json begin_at(const json& said) {
+    const auto period = said.at("period").get<std::int64_t>();
+    if (auto begun = part_->begin_at(period); !begun) return problems_answer(begun.error());
+    begin_s_ = part_->seconds_of(period);
+    directory_->note_restart({{"phase", phase_->name}, {"host", task_.host}, {"begin_s", begin_s_}});
+    return {{"begin_s", begin_s_}};
+  }
+
+  json leave(const json& said) {
+    const auto host = said.at("host").get<std::string>();
+    if (!running_ && part_->is_linked_to(host)) return {{"error", "its phase has ended there"}};
+    const auto period = part_->leave(host);
+    if (!period) return {{"error", period.error()}};
+    return {{"period", *period}};
+  }
+
+  json rejoin(const json& said) {
+    if (rejoining_.joinable()) rejoining_.join();
+    rejoining_ = in_background("rejoin", [this, host = said.at("host").get<std::string>(), links = links_of(said)] {
+      return part_->rejoin(host, participant_, links, repeat_, [this] { return !stop_ && !stop_phase_; });
+    });
     return nullptr;
+  }
+
+  json go_on(const json& said) {
+    if (rejoining_.joinable()) rejoining_.join();
+    const auto gone_on = part_->go_on(said.at("host").get<std::string>(), said.at("period").get<std::int64_t>(),
+                                      [this] { return !stop_ && !stop_phase_; });
+    if (!gone_on) return {{"error", gone_on.error()}};
+    return {{"ok", true}};
   }
 
   json run(const json& said) {
@@ -211,6 +266,7 @@ class PartServer {
 
   void join_work() {
     if (work_.joinable()) work_.join();
+    if (rejoining_.joinable()) rejoining_.join();
   }
 
   /// News, the end of a phase, and five times a second how things stand.
@@ -230,7 +286,10 @@ class PartServer {
     if (outcome) return tell_end(*outcome);
     if (std::chrono::duration<double>(Clock::now() - told_).count() < kBeat_s) return {};
     told_ = Clock::now();
-    json state = {{"event", "state"}, {"time_s", progress.time_s}, {"total_s", progress.total_s}, {"rate", progress.rate}};
+    json state = {{"event", "state"},
+                  {"time_s", begin_s_ + progress.time_s},
+                  {"total_s", begin_s_ + progress.total_s},
+                  {"rate", progress.rate}};
     if (running_) {
       state["links"] = part_->links();
       state["pacing"] = pacing();
@@ -261,7 +320,7 @@ class PartServer {
                   {"limit", outcome.limit >= 0},
                   {"block", outcome.failed_block < 0 ? "" : part_->name(outcome.failed_block)},
                   {"reason", outcome.reason},
-                  {"time_s", outcome.time_s},
+                  {"time_s", begin_s_ + outcome.time_s},
                   {"wall_s", outcome.wall_s},
                   {"pacing", record::pacing_json(phase_->run, outcome)},
                   {"links", part_->links()}};
@@ -287,14 +346,30 @@ class PartServer {
     part_.reset();
     const auto closed = directory_->close(said.at("status").get<std::string>(), said.at("reason").get<std::string>());
     json files = json::array();
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(task_.directory))
-      if (entry.is_regular_file())
-        files.push_back({std::filesystem::relative(entry.path(), task_.directory).string(), entry.file_size()});
+    std::vector<std::filesystem::path> paths;
+    for (const auto& [name, folder] : folders())
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) {
+          files.push_back({(name / std::filesystem::relative(entry.path(), folder)).string(), entry.file_size()});
+          paths.push_back(entry.path());
+        }
     json answer = {{"answer", "close"}, {"files", files}};
     if (!closed) answer["error"] = closed.error();
     if (!say(answer)) return nullptr;
-    for (const json& file : files) send_file(task_.directory / file.at(0).get<std::string>(), file.at(1).get<std::uint64_t>());
+    for (std::size_t i = 0; i < paths.size(); ++i) send_file(paths[i], files[i].at(1).get<std::uint64_t>());
     return nullptr;
+  }
+
+  /// Where the part and those that it goes on for left what they recorded, and what they are called in the run directory.
+  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> folders() const {
+    std::vector<std::pair<std::filesystem::path, std::filesystem::path>> found{{"", task_.directory}};
+    const auto dash = task_.run.rfind('-');
+    if (dash == std::string::npos) return found;
+    const std::string first = task_.run.substr(0, dash);
+    for (int epoch = 0; part_name(first, epoch) != task_.run && epoch < kMostParts; ++epoch)
+      if (const auto folder = task_.directory.parent_path() / part_name(first, epoch); std::filesystem::is_directory(folder))
+        found.emplace_back(fmt::format("epoch_{}", epoch), folder);
+    return found;
   }
 
   void send_file(const std::filesystem::path& file, std::uint64_t size) {
@@ -345,7 +420,8 @@ class PartServer {
   bool complete_ = false;  ///< the phase
   std::vector<SharedRecord> initial_;
   std::atomic<bool> stop_phase_{false};
-  std::thread work_;
+  std::thread work_, rejoining_;
+  double begin_s_ = 0.0;  ///< in the phase: later than its begin for a part that goes on for a lost one
   std::unique_ptr<PartPhase> part_;
 };
 

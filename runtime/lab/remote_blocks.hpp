@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "execute/remote_end.hpp"
@@ -14,10 +15,41 @@ const BlockDescription& sample_inlet();   ///< one stream output
 const BlockDescription& record_outlet();  ///< one message input, no streams
 const BlockDescription& record_inlet();   ///< one message output, fires once a period of the phase
 
+/// Samples that are missing in a stream because the host that made them was lost.
+struct Gap {
+  std::uint64_t first = 0, count = 0;  ///< samples of the stream
+  std::uint32_t epoch = 0;             ///< of the part that goes on behind
+};
+
+/// A new link in place of a lost one: of the kind that the end had.
+struct NewLink {
+  std::unique_ptr<transport::Outlet> outlet;
+  std::unique_ptr<transport::Inlet> inlet;
+  std::uint32_t epoch = 0;
+};
+
+/// What is done to the end of a stream where a lost host is started again. From other threads than the block's.
+class StreamEnd {
+ public:
+  virtual ~StreamEnd() = default;
+  /// Before the run, of a part that goes on for a lost one: its first sample is the stream's sample `sample`.
+  virtual void begin_at(std::uint64_t sample) = 0;
+  /// Called in the block's thread when a gap is known.
+  virtual void on_gap(std::function<void(const Gap&)>) {}
+  /// Lets go of the link to a lost host; the block waits for the next one. The sample from which on the stream may go on. Error:
+  /// it can't.
+  virtual tl::expected<std::uint64_t, std::string> leave() = 0;
+  /// Goes on with another link, over which the stream goes on at `sample`.
+  virtual tl::expected<void, transport::Failure> rejoin(NewLink link, std::uint64_t sample, const transport::GoOn& go_on) = 0;
+  /// Whether the host waits for a lost one: no tolerance ends meanwhile.
+  virtual void pause(bool yes) = 0;
+};
+
 /// A made end: the instance that the executor calls, and what it tells beside its calls.
 struct MadeEnd {
   std::unique_ptr<Instance> instance;
   std::shared_ptr<execute::RemoteEnd> end;
+  std::shared_ptr<StreamEnd> stream;  ///< null: of records
 };
 
 /// What the run is told when a link gives up.

@@ -1,9 +1,12 @@
 // A stream between hosts: its samples leave here and come in there.
 #include <bodeflow/record_layout.hpp>
 #include <cstring>
+#include <deque>
+#include <limits>
 
 #include "execute/run.hpp"
 #include "lab/end_base.hpp"
+#include "lab/link_slot.hpp"
 
 namespace bodeflow::lab {
 namespace {
@@ -26,14 +29,29 @@ std::uint64_t most_samples(const StreamFacts& facts) {
   return std::max<std::uint64_t>(1, kMessage / (facts.channels * element_size(facts.element)));
 }
 
-class SampleOutlet final : public End {
+class SampleOutlet final : public End, public StreamEnd {
  public:
-  SampleOutlet(const Cut& cut, std::unique_ptr<transport::Outlet> outlet) : cut_(cut), outlet_(std::move(outlet)) {}
+  SampleOutlet(const Cut& cut, std::unique_ptr<transport::Outlet> outlet) : cut_(cut), link_(std::move(outlet)) {}
 
   bool ended(execute::BlockRun& block, execute::Lane& lane) override {
     const Result done = send_end(block, lane);
     if (!done) block.run->control.fail(block.index, done.error());
     return done.has_value();
+  }
+
+  void begin_at(std::uint64_t sample) override { offset_ = next_ = sample; }
+
+  tl::expected<std::uint64_t, std::string> leave() override {
+    return link_.take_out([&](transport::Outlet&) { return next_; });
+  }
+
+  void pause(bool yes) override { link_.pause(yes); }
+
+  tl::expected<void, transport::Failure> rejoin(NewLink link, std::uint64_t, const transport::GoOn& go_on) override {
+    return link_.put_in(std::move(link.outlet), [&](transport::Outlet& outlet) -> tl::expected<void, transport::Failure> {
+      if (!ended_) return {};
+      return outlet.send(head(transport::Kind::end, next_), {}, go_on);
+    });
   }
 
  protected:
@@ -46,7 +64,7 @@ class SampleOutlet final : public End {
       parts_.clear();
       for (std::uint32_t c = 0; c < in.channel_count; ++c)
         parts_.emplace_back(static_cast<const std::byte*>(in.channels[c]) + (in.offset + done) * bytes, count * bytes);
-      transport::Header header = head(transport::Kind::samples, call.position + done);
+      transport::Header header = head(transport::Kind::samples, offset_ + call.position + done);
       header.count = count;
       if (auto sent = send(block, execute::lane_of(block), header); !sent) return sent;
       done += count;
@@ -71,26 +89,76 @@ class SampleOutlet final : public End {
   }
 
   Result send(execute::BlockRun& block, execute::Lane& lane, const transport::Header& header) {
-    const auto sent = outlet_->send(header, parts_, [&] { return execute::goes_on(block, lane); });
+    const auto sent = link_.use([&] { return execute::goes_on(block, lane); },
+                                [&](transport::Outlet& outlet, const transport::GoOn& go_on) {
+                                  auto done = outlet.send(header, parts_, go_on);
+                                  if (done) next_ = static_cast<std::uint64_t>(header.position) + header.count;
+                                  if (done && header.kind == transport::Kind::end) ended_ = true;
+                                  return done;
+                                });
     return sent ? Result{} : Result(tl::unexpected(text_of(cut_, sent.error())));
   }
 
   Result send_end(execute::BlockRun& block, execute::Lane& lane) {
     if (std::exchange(end_sent_, true)) return {};
     parts_.clear();
-    return send(block, lane, head(transport::Kind::end, static_cast<std::uint64_t>(block.position)));
+    // A part that goes on for a lost one may begin behind the end of a short stream.
+    std::uint64_t position = offset_ + static_cast<std::uint64_t>(block.position);
+    if (cut_.facts.length >= 0) position = std::min(position, static_cast<std::uint64_t>(cut_.facts.length));
+    transport::Header header = head(transport::Kind::end, position);
+    header.count = 0;
+    return send(block, lane, header);
   }
 
   Cut cut_;
-  std::unique_ptr<transport::Outlet> outlet_;
+  LinkSlot<transport::Outlet> link_;
   std::vector<std::span<const std::byte>> parts_;
+  std::uint64_t offset_ = 0;  ///< sample of the stream that is the block's first
   bool end_sent_ = false;
+  // Under the lock of link_.
+  std::uint64_t next_ = 0;  ///< sample of the stream
+  bool ended_ = false;
 };
 
 /// Gives the `delay` samples before the first real one, then what comes in.
-class SampleInlet final : public End {
+class SampleInlet final : public End, public StreamEnd {
  public:
-  SampleInlet(const Cut& cut, std::unique_ptr<transport::Inlet> inlet) : cut_(cut), inlet_(std::move(inlet)) {}
+  SampleInlet(const Cut& cut, std::unique_ptr<transport::Inlet> inlet)
+      : cut_(cut), link_(std::move(inlet)), channels_(cut.facts.channels), last_(cut.facts.channels) {
+    for (auto& sample : last_) sample.resize(bytes());
+  }
+
+  void begin_at(std::uint64_t sample) override {
+    offset_ = sample;
+    expected_.reset();
+  }
+  void on_gap(std::function<void(const Gap&)> tell) override { tell_gap_ = std::move(tell); }
+
+  tl::expected<std::uint64_t, std::string> leave() override {
+    return link_.take_out([&](transport::Inlet& inlet) -> tl::expected<std::uint64_t, std::string> {
+      for (auto message = inlet.poll(0.0); message && *message; message = inlet.poll(0.0))
+        here_.push_back({std::move(**message), {}});
+      std::uint64_t next = offset_ + received_;
+      bool ended = known_end_.has_value();
+      for (const auto& [message, rejoined] : here_) {
+        next = std::max(next, rejoined ? offset_ + rejoined->sample
+                                       : static_cast<std::uint64_t>(message.header.position) + message.header.count);
+        ended = ended || (!rejoined && message.header.kind == transport::Kind::end);
+      }
+      if (ended) return tl::unexpected("the stream " + cut_.name + " had ended");
+      return next;
+    });
+  }
+
+  void pause(bool yes) override { link_.pause(yes); }
+
+  tl::expected<void, transport::Failure> rejoin(NewLink link, std::uint64_t sample, const transport::GoOn&) override {
+    if (cut_.facts.length >= 0) sample = std::min(sample, static_cast<std::uint64_t>(cut_.facts.length));
+    link_.put_in(std::move(link.inlet), [&](transport::Inlet&) {
+      here_.push_back({{}, Rejoined{std::max(sample, offset_) - offset_, link.epoch}});
+    });
+    return {};
+  }
 
  protected:
   Result process(execute::BlockRun& block, bf_process& call) override {
@@ -107,24 +175,55 @@ class SampleInlet final : public End {
   Result finish(execute::BlockRun&) override { return {}; }
 
  private:
+  struct Rejoined {
+    std::uint64_t sample = 0;  ///< of this part, at which the stream goes on
+    std::uint32_t epoch = 0;
+  };
+  struct Arrived {
+    transport::Message message;
+    std::optional<Rejoined> rejoined;  ///< instead of a message
+  };
+
   std::uint64_t bytes() const { return element_size(cut_.facts.element); }
 
   /// Waits until the stream's first `needed` real samples are here, or its end.
   Result fill(execute::BlockRun& block, std::uint64_t begin, std::uint64_t needed) {
     drop_before(begin - std::min(begin, cut_.delay));
     while (received_ < needed && !known_end_) {
-      auto message = inlet_->next([&] { return execute::goes_on(block, execute::lane_of(block)); });
-      if (!message) return tl::unexpected(text_of(cut_, message.error()));
-      if (std::string wrong = take(*message); !wrong.empty()) return tl::unexpected(text_of(cut_, {{}, wrong}));
+      const auto taken =
+          link_.use([&] { return execute::goes_on(block, execute::lane_of(block)); },
+                    [&](transport::Inlet& inlet, const transport::GoOn& go_on) { return take_next(inlet, go_on); });
+      if (!taken) return tl::unexpected(text_of(cut_, taken.error()));
     }
+    return {};
+  }
+
+  tl::expected<void, transport::Failure> take_next(transport::Inlet& inlet, const transport::GoOn& go_on) {
+    std::string wrong;
+    if (!here_.empty()) {
+      const Arrived first = std::move(here_.front());
+      here_.pop_front();
+      if (first.rejoined)
+        fill_gap(*first.rejoined);
+      else
+        wrong = take(first.message);
+    } else {
+      auto message = inlet.next(go_on);
+      if (!message) return tl::unexpected(message.error());
+      wrong = take(*message);
+    }
+    if (!wrong.empty()) return tl::unexpected(transport::Failure{transport::Failure::Kind::refused, wrong});
     return {};
   }
 
   /// "" or what is wrong with the message.
   std::string take(const transport::Message& message) {
     const transport::Header& header = message.header;
-    if (static_cast<std::uint64_t>(header.position) != received_)
-      return "the other side went on at sample " + std::to_string(header.position) + ", expected " + std::to_string(received_);
+    const std::int64_t at = header.position - static_cast<std::int64_t>(offset_);
+    // The first message for a part that goes on for a lost one may lie before its beginning.
+    if (expected_ ? at != *expected_ : at > 0)
+      return "the other side went on at sample " + std::to_string(header.position) + ", expected " +
+             std::to_string(offset_ + received_);
     if (header.kind == transport::Kind::end) {
       known_end_ = received_;
       return "";
@@ -133,13 +232,33 @@ class SampleInlet final : public End {
     if (header.kind != transport::Kind::samples || header.channels != cut_.facts.channels ||
         header.element != cut_.facts.element || message.payload.size() != channel * header.channels)
       return "the other side sent something else than the stream's samples";
-    channels_.resize(cut_.facts.channels);
+    expected_ = at + static_cast<std::int64_t>(header.count);
+    if (*expected_ <= static_cast<std::int64_t>(received_)) return "";
+    const std::uint64_t skipped = (received_ - static_cast<std::uint64_t>(at)) * bytes();
     for (std::uint32_t c = 0; c < cut_.facts.channels; ++c) {
       const auto first = message.payload.begin() + static_cast<std::ptrdiff_t>(c * channel);
-      channels_[c].insert(channels_[c].end(), first, first + static_cast<std::ptrdiff_t>(channel));
+      const auto last = first + static_cast<std::ptrdiff_t>(channel);
+      channels_[c].insert(channels_[c].end(), first + static_cast<std::ptrdiff_t>(skipped), last);
+      last_[c].assign(last - static_cast<std::ptrdiff_t>(bytes()), last);
     }
-    received_ += header.count;
+    received_ = static_cast<std::uint64_t>(*expected_);
     return "";
+  }
+
+  /// What stands where the lost host's samples are missing.
+  void fill_gap(const Rejoined& rejoined) {
+    const std::uint64_t count = rejoined.sample - received_;
+    for (std::uint32_t c = 0; c < cut_.facts.channels; ++c) {
+      std::vector<std::byte> sample = last_[c];
+      const double none = std::numeric_limits<double>::quiet_NaN();
+      if (cut_.gaps == graph::Gaps::nan)
+        for (std::size_t i = 0; i < sample.size(); i += sizeof none) std::memcpy(sample.data() + i, &none, sizeof none);
+      for (std::uint64_t i = 0; i < count; ++i) channels_[c].insert(channels_[c].end(), sample.begin(), sample.end());
+    }
+    const Gap gap{offset_ + received_, count, rejoined.epoch};
+    received_ = rejoined.sample;
+    expected_ = static_cast<std::int64_t>(received_);
+    if (count > 0 && tell_gap_) tell_gap_(gap);
   }
 
   void drop_before(std::uint64_t sample) {
@@ -168,11 +287,25 @@ class SampleInlet final : public End {
   }
 
   Cut cut_;
-  std::unique_ptr<transport::Inlet> inlet_;
-  std::vector<std::vector<std::byte>> channels_;  ///< real samples [first_, received_)
-  std::uint64_t first_ = 0, received_ = 0;
+  LinkSlot<transport::Inlet> link_;
+  std::function<void(const Gap&)> tell_gap_;
+  std::vector<std::vector<std::byte>> channels_;  ///< real samples [first_, received_) of this part
+  std::vector<std::vector<std::byte>> last_;      ///< the last sample that came
+  std::uint64_t offset_ = 0;                      ///< sample of the stream that is this part's first
+  std::uint64_t first_ = 0;
+  // Written under the lock of link_.
+  std::uint64_t received_ = 0;
+  std::optional<std::int64_t> expected_ = 0;  ///< sample of this part that comes next; none: whatever comes
   std::optional<std::uint64_t> known_end_;
+  std::deque<Arrived> here_;  ///< before what comes on the link: what came on lost ones, and where their followers go on
 };
+
+template <class StreamsEnd>
+MadeEnd wrapped(const std::string& name, const BlockDescription& type, const std::shared_ptr<StreamsEnd>& end) {
+  MadeEnd made = End::wrap(name, type, end);
+  made.stream = end;
+  return made;
+}
 
 }  // namespace
 
@@ -187,11 +320,11 @@ const BlockDescription& sample_inlet() {
 }
 
 MadeEnd make_sample_outlet(const std::string& name, const Cut& cut, std::unique_ptr<transport::Outlet> outlet) {
-  return End::wrap(name, sample_outlet(), std::make_shared<SampleOutlet>(cut, std::move(outlet)));
+  return wrapped(name, sample_outlet(), std::make_shared<SampleOutlet>(cut, std::move(outlet)));
 }
 
 MadeEnd make_sample_inlet(const std::string& name, const Cut& cut, std::unique_ptr<transport::Inlet> inlet) {
-  return End::wrap(name, sample_inlet(), std::make_shared<SampleInlet>(cut, std::move(inlet)));
+  return wrapped(name, sample_inlet(), std::make_shared<SampleInlet>(cut, std::move(inlet)));
 }
 
 }  // namespace bodeflow::lab

@@ -17,6 +17,7 @@ struct Cut {
   StreamFacts facts;
   std::uint64_t delay = 0;      ///< samples before the first real one
   std::vector<double> initial;  ///< their values; empty: zeros
+  graph::Gaps gaps = graph::Gaps::nan;
 
   // Records.
   Rate latency;             ///< seconds, between a record's time and its effect
@@ -58,5 +59,10 @@ struct Part {
 /// The part of `host`. Facts and phase are the whole ones.
 Part part_of(const graph::Phase& phase, const plan::Facts& facts, const Layout& layout, const std::string& host,
              const plan::PlanOptions& options);
+
+/// Makes of `part`, not run yet, one that begins at `period` of the phase as if that were the first: what its blocks, streams and
+/// schedule have before is left out, of a live parameter the last change before is made at the beginning. The end of the run,
+/// from there.
+Rate begin_part_at(Part& part, const Rate& end, std::int64_t period);
 
 }  // namespace bodeflow::lab

@@ -27,6 +27,8 @@ class Manifest {
   /// How a host of a run over hosts ended its part of a phase, in its words: complete, time_s, wall_s, pacing.
   void add_host(const std::string& host, const graph::Phase& phase, int repeat, const nlohmann::json& end);
   void add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes);
+  /// One more item of a list.
+  void add_item(const std::string& list, const nlohmann::ordered_json& item) { json_[list].push_back(item); }
   void end(const std::string& status, const std::string& reason);
 
  private:

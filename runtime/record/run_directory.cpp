@@ -91,6 +91,12 @@ struct RunDirectory::State {
     if (!done && lost.empty()) lost = done.error();
   }
 
+  void note(const std::string& list, const nlohmann::json& item) {
+    const std::lock_guard lock(mutex);
+    manifest.add_item(list, item);
+    keep_first_error(manifest.write());
+  }
+
   Done write_result() const { return write_atomically(path / "result.json", json_text(result()), status != "running"); }
 
   ordered_json result() const {
@@ -248,6 +254,16 @@ void RunDirectory::add_host(const std::string& host, const graph::Phase& phase, 
 void RunDirectory::add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes) {
   const std::lock_guard lock(state_->mutex);
   state_->manifest.add_hashes(hashes);
+}
+
+void RunDirectory::note_gap(const nlohmann::json& gap) {
+  event("gap", gap);
+  state_->note("gaps", gap);
+}
+
+void RunDirectory::note_restart(const nlohmann::json& restart) {
+  event("host goes on", restart);
+  state_->note("restarts", restart);
 }
 
 tl::expected<void, std::string> RunDirectory::close(const std::string& status, const std::string& reason) {

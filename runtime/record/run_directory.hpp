@@ -48,6 +48,11 @@ class RunDirectory {
   void add_host(const std::string& host, const graph::Phase& phase, int repeat, const nlohmann::json& end);
   void add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes);
 
+  /// Notes in the manifest and the events that samples are missing in a stream.
+  void note_gap(const nlohmann::json& gap);
+  /// Notes there that a part of the run goes on for a lost one.
+  void note_restart(const nlohmann::json& restart);
+
   /// Writes result.json and the manifest's closing part; hashes the files that blocks wrote. `status`: "complete", "partial" or
   /// "failed".
   tl::expected<void, std::string> close(const std::string& status, const std::string& reason);

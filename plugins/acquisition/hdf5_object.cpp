@@ -80,6 +80,10 @@ Quiet::Quiet() {
 
 Quiet::~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
+/// The library sleeps twice as long from one attempt to the next, 1 ns at first: about a second for what is damaged, where
+/// its default of 100 would take for ever.
+constexpr unsigned kReadAttempts = 30;
+
 Handle open_file(const std::string& path) {
   hbool_t safe = 0;
   if (H5is_library_threadsafe(&safe) < 0 || safe == 0)
@@ -88,6 +92,7 @@ Handle open_file(const std::string& path) {
   if (known == 0) fail("is not an HDF5 file");
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "can't be opened");
   check(H5Pset_file_locking(access.id(), false, true), "can't be opened");  // a reader never stops a writer
+  check(H5Pset_metadata_read_attempts(access.id(), kReadAttempts), "can't be opened");
   hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id());
   if (file < 0) {  // the recording of a run that was killed says that it is still being written
     const hid_t again = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id());

@@ -36,7 +36,7 @@ TEST_CASE("schema: its keys are the loader's keys") {
     CHECK(s["properties"].contains(key));
   CHECK(s["properties"].size() == 14);
   CHECK(s["additionalProperties"] == false);
-  CHECK(s["definitions"]["run"]["properties"].size() == 12);
+  CHECK(s["definitions"]["run"]["properties"].size() == 14);
   CHECK(s["definitions"]["phases"]["items"]["properties"].size() == 10);
 }
 

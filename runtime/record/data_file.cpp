@@ -5,11 +5,16 @@
 #include <algorithm>
 
 #include "record/hdf5_records.hpp"
+#include "record/pending_changes.hpp"
 
 namespace bodeflow::record {
 namespace {
 
 using h5::Handle;
+
+/// The library sleeps twice as long from one attempt to the next, 1 ns at first: about a second for what is damaged, where
+/// its default of 100 would take for ever.
+constexpr unsigned kReadAttempts = 30;
 
 Handle open_dataset(hid_t file, const std::string& path) {
   return {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "can't open '/" + path + "'"};
@@ -112,8 +117,10 @@ struct DataFile::State {
   }
 
   void open() {
+    finish_changes(path);
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "can't set up HDF5");
     h5::check(H5Pset_file_locking(access.id(), false, true), "can't set up HDF5");
+    h5::check(H5Pset_metadata_read_attempts(access.id(), kReadAttempts), "can't set up HDF5");
     // The reader's part of single-writer-multiple-reader mode: the writer may be at work, or may have been killed
     file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id()), H5Fclose, "can't open it");
   }

@@ -9,49 +9,29 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <string>
 #include <type_traits>
+
+#include "record/pending_changes.hpp"
 
 namespace bodeflow::record::h5 {
 namespace {
 
-/// A change of bytes that the file held when it was opened.
-struct Change {
-  haddr_t address;
-  std::vector<unsigned char> bytes;
-};
-
 /// The library sees the first member and passes its address to the functions below; they run under `lock`.
 struct DeferredFile {
   H5FD_t common{};
+  std::string path;
   int file = -1;
   haddr_t held = 0;  ///< bytes of the file when it was opened
   haddr_t end = 0;   ///< bytes of the file now
   haddr_t allocated = 0;
-  std::vector<Change> changes;  ///< in the order of writing
+  std::vector<PendingChange> changes;  ///< of bytes that it held, in the order of writing
 };
 
 static_assert(std::is_standard_layout_v<DeferredFile>, "the library's address of the first member is ours");
 
 DeferredFile* self_of(H5FD_t* file) { return reinterpret_cast<DeferredFile*>(file); }
 const DeferredFile* self_of(const H5FD_t* file) { return reinterpret_cast<const DeferredFile*>(file); }
-
-bool write_all(int file, haddr_t address, const unsigned char* bytes, std::size_t size) {
-  while (size > 0) {
-    const ssize_t done = ::pwrite(file, bytes, size, static_cast<off_t>(address));
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return false;
-    bytes += done;
-    address += static_cast<haddr_t>(done);
-    size -= static_cast<std::size_t>(done);
-  }
-  return true;
-}
-
-bool apply(const DeferredFile& file, bool superblock) {
-  return std::all_of(file.changes.begin(), file.changes.end(), [&](const Change& change) {
-    return (change.address == 0) != superblock || write_all(file.file, change.address, change.bytes.data(), change.bytes.size());
-  });
-}
 
 H5FD_t* open_file(const char* name, unsigned flags, hid_t, haddr_t) {
   const int create = (flags & H5F_ACC_CREAT) != 0 ? O_CREAT : 0, empty = (flags & H5F_ACC_TRUNC) != 0 ? O_TRUNC : 0;
@@ -63,6 +43,7 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t, haddr_t) {
     ::close(file);
     return nullptr;
   }
+  opened->path = name;
   opened->file = file;
   opened->held = opened->end = static_cast<haddr_t>(now.st_size);
   return &opened.release()->common;
@@ -70,7 +51,7 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t, haddr_t) {
 
 herr_t close_file(H5FD_t* f) {
   const std::unique_ptr<DeferredFile> file(self_of(f));
-  const bool written = apply(*file, false) && apply(*file, true);
+  const bool written = write_changes(file->path, file->file, file->changes);
   return ::close(file->file) == 0 && written ? 0 : -1;
 }
 
@@ -125,7 +106,7 @@ herr_t write_bytes(H5FD_t* f, H5FD_mem_t, hid_t, haddr_t address, std::size_t si
   } catch (const std::bad_alloc&) {
     return -1;
   }
-  if (!write_all(file.file, address + old, in + old, size - old)) return -1;
+  if (!write_at(file.file, address + old, in + old, size - old)) return -1;
   file.end = std::max(file.end, address + size);
   return 0;
 }

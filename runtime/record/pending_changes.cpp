@@ -110,7 +110,8 @@ void apply_left(const std::filesystem::path& path, const std::filesystem::path& 
   if (file.number < 0 || ::fstat(file.number, &now) != 0) throw std::runtime_error(std::strerror(errno));
   const auto text = read_text(pending);
   if (!text) throw std::runtime_error(text.error());
-  if (!write_each(file.number, unpacked(*text, static_cast<std::uint64_t>(now.st_size)))) throw std::runtime_error(std::strerror(errno));
+  if (!write_each(file.number, unpacked(*text, static_cast<std::uint64_t>(now.st_size))))
+    throw std::runtime_error(std::strerror(errno));
   ::unlink(pending.c_str());
 }
 

@@ -90,6 +90,8 @@ void SubscribeBlock::check_shape() const {
 }
 
 void SubscribeBlock::check_place() {
+  if (!expected_ && message_.position != 0)
+    log_info("topic '" + topic_.name + "': joined a stream that runs, at its sample " + std::to_string(message_.position));
   if (expected_ && message_.position != *expected_) {
     const auto missing = message_.position - *expected_;
     const bool may = topic_.latest && missing > 0;

@@ -11,30 +11,15 @@
 #include "lab.hpp"
 #include "processes_of.hpp"
 
-using bodeflow::test::processes_with;
-using bodeflow::test::TestLab;
+using namespace bodeflow::test;
 using nlohmann::json;
 
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
+const std::string kLoop = closed_loop("clock: realtime, duration: 4 s, seed: 1");
 const std::string kGraphs = BODEFLOW_SOURCE_DIR "/graphs/lab/";
-
-/// A closed loop over three hosts that is paced by the clock, so that something can happen in the middle.
-const char* const kLoop = R"(bodeflow: 1
-run: {clock: realtime, duration: 4 s, seed: 1}
-blocks:
-  reference: {block: generators.square, sample_rate: 100 Hz, frequency: 1 Hz}
-  error: {block: filters.sum, weights: [1, -1]}
-  pi: {block: plants.linear, domain: discrete, numerator: [0.1, -0.09], denominator: [1, -1]}
-  way: {block: filters.delay, samples: 2}
-  motor: {block: plants.linear, numerator: [1], denominator: [0.1, 1]}
-connections: [reference -> error.a, error -> pi -> way -> motor -> error.b]
-record: [motor.out, pi.out]
-hosts: {bench: [way, motor], controller: [error, pi]}
-)";
 
 /// The motor turns on the bench and its speed is recorded on another host, whether the process that started the run lives or not.
 const char* const kGoesOn = R"(bodeflow: 1
@@ -48,50 +33,6 @@ connections: [excitation -> motor -> speed]
 record: [motor.out, speed.out, reference.out]
 hosts: {bench: [excitation, motor], controller: [speed]}
 )";
-
-void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
-
-double since_s(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-std::vector<std::string> network_options() {
-  return {"--domain", std::to_string(test_domain()), "--let-anyone-on-the-network-in"};
-}
-
-bool skipped(const Hosts& hosts) {
-  if (!hosts.missing().empty()) WARN("skipped: " << hosts.missing());
-  return !hosts.missing().empty();
-}
-
-json file_of(TestLab& lab, const std::string& name) { return json::parse(lab.folder().read(name)); }
-
-std::string text_of(const std::string& file) {
-  std::ifstream in(file);
-  return std::string(std::istreambuf_iterator<char>(in), {});
-}
-
-/// Hashes of the graph in one process, not paced.
-json hashes_here(TestLab& lab, std::string text) {
-  if (const auto at = text.find("realtime"); at != std::string::npos) text.replace(at, 8, "simulated");
-  Process here(lab.run_here(lab.folder().write("here.yaml", text).string(), "here"));
-  REQUIRE(here.wait() == 0);
-  const json hashes = lab.hashes("here");
-  REQUIRE_FALSE(hashes.empty());
-  return hashes;
-}
-
-void require_complete(TestLab& lab, Process& run, const std::string& out, const json& hashes) {
-  const int code = run.wait();
-  INFO(run.output());
-  REQUIRE(code == 0);
-  CHECK(lab.hashes(out) == hashes);
-}
-
-/// The process that runs a host's part, as soon as it is there; 0: none after ten seconds.
-int part_of(TestLab& lab, const std::string& host) {
-  for (const auto begin = Clock::now(); since_s(begin) < 10.0; sleep_s(0.02))
-    if (const auto found = processes_with({"part-worker", lab.path("agent_" + host)}); !found.empty()) return found.front();
-  return 0;
-}
 
 /// A file system of that size in memory, as long as the object lives.
 class SmallDisk {
@@ -114,33 +55,15 @@ class SmallDisk {
 
 }  // namespace
 
-TEST_CASE("lab: a closed loop over hosts is the same bit for bit where one datagram in twenty is lost") {
-  const Hosts hosts(3);
-  if (skipped(hosts)) return;
-  TestLab lab(network_options());
-  lab.agent("bench", {"--interface", Hosts::address(1)}, hosts.on(1, {}));
-  lab.agent("controller", {"--interface", Hosts::address(2)}, hosts.on(2, {}));
-  const auto graph = lab.folder().write("loop.yaml", kLoop).string();
-  const json hashes = hashes_here(lab, kLoop);
-  Process run(hosts.on(0, lab.run(graph, "hosts", {"--interface", Hosts::address(0)})));
-  REQUIRE(part_of(lab, "bench") > 0);
-  REQUIRE(part_of(lab, "controller") > 0);
-  sleep_s(0.3);
-  const auto processes = processes_with({lab.folder().path().string()});
-  CHECK(processes.size() == 6);  // two agents, the launcher, three parts
-  for (const int process : processes) CHECK(bodeflow::test::lose(process, 0.05) > 0);
-  require_complete(lab, run, "hosts", hashes);
-}
-
 TEST_CASE("lab: two runs of one graph at the same time on the same agents do not touch each other") {
   TestLab lab;
   lab.agent("bench");
   lab.agent("controller");
-  const json hashes = hashes_here(lab, text_of(kGraphs + "closed_loop.yaml"));
+  const json hashes = lab.hashes_here(text_of(kGraphs + "closed_loop.yaml"));
   Process first(lab.run(kGraphs + "closed_loop.yaml", "first"));
   Process second(lab.run(kGraphs + "closed_loop.yaml", "second"));
-  require_complete(lab, first, "first", hashes);
-  require_complete(lab, second, "second", hashes);
+  lab.require_complete(first, "first", hashes);
+  lab.require_complete(second, "second", hashes);
 }
 
 TEST_CASE("lab: a full disk of one host ends the run by name and the others keep what they recorded") {
@@ -168,7 +91,7 @@ hosts: {bench: [motor]}
   CHECK(code == 1);
   CHECK(run.output().find("host 'bench': ") != std::string::npos);
   CHECK(run.output().find("No space left on device") != std::string::npos);
-  CHECK(file_of(lab, "out/manifest.json")["status"] == "failed");
+  CHECK(lab.manifest("out")["status"] == "failed");
   CHECK(lab.hashes("out").contains("slow.out"));
 }
 
@@ -184,31 +107,9 @@ TEST_CASE("lab: clocks that are two seconds apart are told and change nothing") 
   CHECK(std::abs(bench - 2.0) <= list[0]["clock_uncertainty_s"].get<double>());
   CHECK(std::abs(controller) <= list[1]["clock_uncertainty_s"].get<double>());
 
-  const json hashes = hashes_here(lab, text_of(kGraphs + "closed_loop.yaml"));
+  const json hashes = lab.hashes_here(text_of(kGraphs + "closed_loop.yaml"));
   Process run(lab.run(kGraphs + "closed_loop.yaml", "hosts"));
-  require_complete(lab, run, "hosts", hashes);
-}
-
-TEST_CASE("lab: a run goes on when the discovery server is killed") {
-  if (shell("command -v fast-discovery-server > /dev/null") != 0) {
-    WARN("skipped: fast-discovery-server is not installed (fastdds-tools)");
-    return;
-  }
-  const Hosts hosts(3);
-  if (skipped(hosts)) return;
-  Process server(hosts.on(0, {"fast-discovery-server", "-i", "0", "-l", Hosts::address(0), "-p", "11811"}));
-  std::vector<std::string> options = network_options();
-  options.insert(options.end(), {"--discovery-server", Hosts::address(0) + ":11811"});
-  TestLab lab(options);
-  Process& bench = lab.agent("bench", {"--interface", Hosts::address(1)}, hosts.on(1, {}));
-  lab.agent("controller", {"--interface", Hosts::address(2)}, hosts.on(2, {}));
-  const auto graph = lab.folder().write("loop.yaml", kLoop).string();
-  const json hashes = hashes_here(lab, kLoop);
-  Process run(hosts.on(0, lab.run(graph, "hosts", {"--interface", Hosts::address(0)})));
-  REQUIRE(bench.prints("begins"));
-  sleep_s(3.0);
-  server.signal(SIGKILL);
-  require_complete(lab, run, "hosts", hashes);
+  lab.require_complete(run, "hosts", hashes);
 }
 
 TEST_CASE("lab: hosts end their phase and keep their files without a launcher where the graph says so") {
@@ -216,7 +117,7 @@ TEST_CASE("lab: hosts end their phase and keep their files without a launcher wh
   Process& bench = lab.agent("bench");
   Process& controller = lab.agent("controller");
   const auto graph = lab.folder().write("goes_on.yaml", kGoesOn).string();
-  const json hashes = hashes_here(lab, kGoesOn);
+  const json hashes = lab.hashes_here(kGoesOn);
   Process run(lab.run(graph, "out"));
   REQUIRE(lab.has_graph("bench"));
   REQUIRE(lab.has_graph("controller"));
@@ -228,7 +129,7 @@ TEST_CASE("lab: hosts end their phase and keep their files without a launcher wh
   }
   const auto kept = [&](const std::string& host, const std::string& stream) {
     for (const auto& entry : fs::directory_iterator(lab.path("agent_" + host))) {
-      const json manifest = file_of(lab, "agent_" + host + "/" + entry.path().filename().string() + "/manifest.json");
+      const json manifest = lab.manifest("agent_" + host + "/" + entry.path().filename().string());
       CHECK(manifest["status"] == "complete");
       CHECK(manifest["hashes"][stream] == hashes[stream]);
     }
@@ -241,11 +142,11 @@ TEST_CASE("lab: an agent that was killed and started again serves the next run")
   TestLab lab;
   lab.agent("bench");
   lab.agent("controller");
-  const json hashes = hashes_here(lab, text_of(kGraphs + "closed_loop.yaml"));
+  const json hashes = lab.hashes_here(text_of(kGraphs + "closed_loop.yaml"));
   lab.crash("bench");
   lab.agent("bench");
   Process run(lab.run(kGraphs + "closed_loop.yaml", "hosts"));
-  require_complete(lab, run, "hosts", hashes);
+  lab.require_complete(run, "hosts", hashes);
 }
 
 TEST_CASE("lab: a connection that stands still is told within a second and a half and goes on afterwards") {
@@ -253,9 +154,9 @@ TEST_CASE("lab: a connection that stands still is told within a second and a hal
   lab.agent("bench");
   lab.agent("controller");
   const auto graph = lab.folder().write("loop.yaml", kLoop).string();
-  const json hashes = hashes_here(lab, kLoop);
+  const json hashes = lab.hashes_here(kLoop);
   Process run(lab.run(graph, "hosts"));
-  const int part = part_of(lab, "bench");
+  const int part = lab.part_of("bench");
   REQUIRE(part > 0);
   REQUIRE(lab.has_graph("bench"));
   sleep_s(2.0);
@@ -268,7 +169,7 @@ TEST_CASE("lab: a connection that stands still is told within a second and a hal
   INFO(run.output());
   CHECK(told);
   CHECK(after < 1.3);
-  require_complete(lab, run, "hosts", hashes);
+  lab.require_complete(run, "hosts", hashes);
 }
 
 TEST_CASE("lab: top shows every host and connection of a run") {
@@ -278,9 +179,7 @@ TEST_CASE("lab: top shows every host and connection of a run") {
   Process run(lab.run(lab.folder().write("loop.yaml", kLoop).string(), "out"));
   REQUIRE(lab.has_graph("controller"));
   sleep_s(1.5);
-  Process top({BODEFLOW_COMMAND, "top", "--json", "--once", "--loopback", "--domain", std::to_string(test_domain())});
-  REQUIRE(top.wait() == 0);
-  const json runs = json::parse(top.output());
+  const json runs = lab.top();
   INFO(runs.dump(1));
   REQUIRE(runs.size() == 1);
   REQUIRE(runs[0]["hosts"].size() == 3);
@@ -307,8 +206,8 @@ TEST_CASE("lab: top shows every host and connection of a run") {
     }
   }
   std::sort(seen.begin(), seen.end());
-  CHECK(seen == std::vector<std::string>{" > controller", "bench < controller", "bench > controller", "controller < ",
-                                         "controller < bench", "controller > bench"});
+  CHECK(seen == std::vector<std::string>{" < bench", " > controller", "bench < controller", "bench > ", "bench > controller",
+                                         "controller < ", "controller < bench", "controller > bench"});
   CHECK(run.wait() == 0);
 }
 
@@ -317,7 +216,7 @@ TEST_CASE("lab: nothing is left in shared memory after the clean end of a run an
   Process& bench = lab.agent("bench");
   Process& controller = lab.agent("controller");
   Process run(lab.run(lab.folder().write("loop.yaml", kLoop).string(), "out"));
-  REQUIRE(part_of(lab, "controller") > 0);
+  REQUIRE(lab.part_of("controller") > 0);
   sleep_s(2.0);
   std::vector<std::string> segments;
   for (const int process : processes_with({lab.folder().path().string()}))

@@ -45,6 +45,12 @@ std::vector<int> processes_with(const std::vector<std::string>& words) {
   return found;
 }
 
+double resident_mb(int process) {
+  std::ifstream file(folder_of(process) + "/statm");
+  double all = 0.0, resident = 0.0;
+  return file >> all >> resident ? resident * static_cast<double>(sysconf(_SC_PAGESIZE)) * 1e-6 : 0.0;
+}
+
 std::vector<std::string> shared_memory_of(int process) {
   std::set<std::string> names;
   std::ifstream maps(folder_of(process) + "/maps");

@@ -8,6 +8,9 @@ namespace bodeflow::test {
 /// The processes of the built command whose command lines have all these words.
 std::vector<int> processes_with(const std::vector<std::string>& words);
 
+/// Memory that a process has in place, in MB; 0: it is not there any more.
+double resident_mb(int process);
+
 /// The segments of shared memory that a process has open.
 std::vector<std::string> shared_memory_of(int process);
 

@@ -13,8 +13,7 @@
 #include "record/data_file.hpp"
 
 using bodeflow::record::DataFile;
-using bodeflow::test::processes_with;
-using bodeflow::test::TestLab;
+using namespace bodeflow::test;
 using nlohmann::json;
 
 namespace {
@@ -43,19 +42,7 @@ record: [thrice.out]
 hosts: {bench: [source], middle: [twice]}
 )";
 
-const char* const kLoop = R"(bodeflow: 1
-run: {clock: realtime, duration: 8 s, seed: 1, restart: true, gaps: hold}
-blocks:
-  reference: {block: generators.square, sample_rate: 100 Hz, frequency: 1 Hz}
-  error: {block: filters.sum, weights: [1, -1]}
-  pi: {block: plants.linear, domain: discrete, numerator: [0.1, -0.09], denominator: [1, -1]}
-  way: {block: filters.delay, samples: 2}
-  motor: {block: plants.linear, numerator: [1], denominator: [0.1, 1]}
-  speed: {block: filters.gain, gain: 1}
-connections: [reference -> error.a, error -> pi -> way -> motor -> error.b, motor -> speed]
-record: [speed.out, pi.out]
-hosts: {bench: [way, motor], controller: [error, pi]}
-)";
+const std::string kLoop = closed_loop("clock: realtime, duration: 8 s, seed: 1, restart: true, gaps: hold");
 
 std::vector<double> stream_of(TestLab& lab, const std::string& file, const std::string& key) {
   const auto data = DataFile::open(lab.path(file));
@@ -65,28 +52,13 @@ std::vector<double> stream_of(TestLab& lab, const std::string& file, const std::
   return (*data)->read(*stream, 0, stream->length).value();
 }
 
-void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
-
 /// Kills the process of a host's part, the first or one that goes on for a lost one, a second after its phase has begun.
 void kill_part(TestLab& lab, const std::string& host, int epoch = 0) {
-  const auto begins = [&](const std::string& run) {
-    std::ifstream in(run + "/events.jsonl");
-    const std::string events(std::istreambuf_iterator<char>(in), {});
-    const auto dash = run.rfind("/");
-    const bool right = epoch == 0 ? run.find('-', dash) == std::string::npos : run.ends_with("-" + std::to_string(epoch));
-    return right && events.find("phase begins") != std::string::npos;
-  };
-  for (int i = 0; i < 1000; ++i, sleep_s(0.02)) {
-    const auto runs = lab.runs_of(host);
-    const auto run = std::find_if(runs.begin(), runs.end(), begins);
-    if (run == runs.end()) continue;
-    sleep_s(1.0);
-    const auto processes = processes_with({"part-worker", *run});
-    REQUIRE(processes.size() == 1);
-    kill(processes.front(), SIGKILL);
-    return;
-  }
-  FAIL("no part of " << host << " began within 20 s");
+  const std::string run = lab.begun(host, epoch);
+  sleep_s(1.0);
+  const auto processes = processes_with({"part-worker", run});
+  REQUIRE(processes.size() == 1);
+  kill(processes.front(), SIGKILL);
 }
 
 /// The one gap of connection "twice.out -> back.in", with every other sample of the run checked.
@@ -94,7 +66,7 @@ void check_samples(TestLab& lab, Process& run) {
   const int code = run.wait();
   INFO(run.output());
   REQUIRE(code == 0);
-  const json manifest = json::parse(lab.folder().read("out/manifest.json"));
+  const json manifest = lab.manifest("out");
   REQUIRE(manifest["gaps"].size() == 1);
   const json& gap = manifest["gaps"][0];
   CHECK(gap["epoch"] == 1);
@@ -150,7 +122,7 @@ TEST_CASE("lab: a loop over hosts holds the last sample where its motor was lost
   const int code = run.wait();
   INFO(run.output());
   REQUIRE(code == 0);
-  const json gaps = json::parse(lab.folder().read("out/manifest.json"))["gaps"];
+  const json gaps = lab.manifest("out")["gaps"];
   CHECK(gaps.size() == 2);  // of the controller and of this machine
   const auto speed = stream_of(lab, "out/data.h5", "speed.out");
   REQUIRE(speed.size() == 800);
@@ -173,7 +145,7 @@ TEST_CASE("lab: a loop over hosts goes on where its controller was lost, which b
   const int code = run.wait();
   INFO(run.output());
   REQUIRE(code == 0);
-  const json manifest = json::parse(lab.folder().read("out/manifest.json"));
+  const json manifest = lab.manifest("out");
   REQUIRE(manifest["gaps"].size() == 1);
   CHECK(manifest["gaps"][0]["host"] == "bench");
   REQUIRE(manifest["restarts"].size() == 1);
@@ -199,7 +171,7 @@ TEST_CASE("lab: a source that is lost begins anew behind the gap, and the host b
     const int code = run.wait();
     INFO(run.output());
     REQUIRE(code == 0);
-    const json manifest = json::parse(lab.folder().read(host + "/manifest.json"));
+    const json manifest = lab.manifest(host);
     CHECK(manifest["status"] == "complete");
     REQUIRE(manifest["gaps"].size() == 1);
     const json& gap = manifest["gaps"][0];
@@ -234,7 +206,7 @@ TEST_CASE("lab: a part that is lost again and again ends the run at the fourth t
   INFO(run.output());
   CHECK(code == 1);
   CHECK(run.output().find("host 'bench' is lost for the 4th time in this run: it is not started again") != std::string::npos);
-  const json manifest = json::parse(lab.folder().read("out/manifest.json"));
+  const json manifest = lab.manifest("out");
   CHECK(manifest["restarts"].size() == 3);
   REQUIRE(manifest["gaps"].size() == 3);
   const auto sent = stream_of(lab, "out/data.h5", "excitation.out"), back = stream_of(lab, "out/data.h5", "back.out");

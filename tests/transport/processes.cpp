@@ -10,8 +10,8 @@
 #include <sstream>
 #include <thread>
 
-Process::Process(std::vector<std::string> command) {
-  command.insert(command.begin(), {"timeout", "-k", "1", "60"});
+Process::Process(std::vector<std::string> command, int most_s) {
+  command.insert(command.begin(), {"timeout", "-k", "1", std::to_string(most_s)});
   std::string name = "/tmp/bodeflow_peer_XXXXXX";
   const int file = mkstemp(name.data());
   file_ = name;

@@ -8,13 +8,13 @@
 /// A process of a test: its standard output goes to a file. Killed when it goes out of scope.
 class Process {
  public:
-  /// `timeout -k 1 60` and the command.
-  explicit Process(std::vector<std::string> command);
+  /// `timeout -k 1 60` and the command; `most_s` in place of the minute.
+  explicit Process(std::vector<std::string> command, int most_s = 60);
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
   ~Process();
 
-  /// The exit code; 124 after a minute.
+  /// The exit code; 124 after its time.
   int wait();
   void signal(int number) const;
   /// SIGINT to the command alone, once: `timeout` would hand it on a second time.

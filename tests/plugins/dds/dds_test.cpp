@@ -1,5 +1,8 @@
 // Topics between running graphs, and between graphs and other programs.
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <sstream>
 
 #include "catch.hpp"
 #include "system/command.hpp"
@@ -24,6 +27,12 @@ std::vector<std::string> with_errors(std::vector<std::string> command) {
   std::string line = "exec";
   for (const auto& word : command) line += " '" + word + "'";
   return {"sh", "-c", line + " 2>&1"};
+}
+
+/// Waits until a run's phase has begun.
+bool begins(const fs::path& run) {
+  return shell("for i in $(seq 400); do grep -qs 'phase begins' " + (run / "events.jsonl").string() +
+               " && exit 0; sleep 0.02; done; exit 1") == 0;
 }
 
 }  // namespace
@@ -90,6 +99,72 @@ record: [subscribe.out]
   Process run(with_errors(graph((folder.path() / "graph.yaml").string(), folder.path() / "a", {})));
   CHECK(run.wait() == 1);
   CHECK(run.output().find("block 'subscribe': topic 'nobody': no writer came within 0.3 s") != std::string::npos);
+}
+
+TEST_CASE("a subscriber that joins a running publisher says where it begins and has every sample from there on") {
+  const Folder folder;
+  const auto& path = folder.path();
+  const std::vector<std::string> joined = {"topic=running"};
+  Process first(graph(ours("record_topic.yaml"), path / "first", joined));
+  Process publish(graph(ours("publish.yaml"), path / "publish", {"topic=running", "run.clock=realtime", "run.duration=6 s"}));
+  REQUIRE(begins(path / "publish"));
+  shell("sleep 1.5");
+  Process late(with_errors(graph(ours("record_topic.yaml"), path / "late", joined)));
+  for (Process* process : {&publish, &first, &late}) CHECK(process->wait() == 0);
+  const auto values = [&](const std::string& csv) {  // without the times: those of a recording begin at zero
+    std::istringstream lines(folder.read(csv));
+    std::vector<std::string> found;
+    for (std::string line; std::getline(lines, line);) found.push_back(line.substr(line.find(',')));
+    found.erase(found.begin());
+    return found;
+  };
+  const auto all = values("first/topic.csv"), rest = values("late/topic.csv");
+  CHECK(all.size() == 6000);
+  const std::string said = late.output(), words = "topic 'running': joined a stream that runs, at its sample ";
+  INFO(said);
+  REQUIRE(said.find(words) != std::string::npos);
+  const auto begin = std::stoul(said.substr(said.find(words) + words.size()));
+  CHECK(begin > 0);
+  REQUIRE(begin + rest.size() == all.size());
+  CHECK(std::equal(rest.begin(), rest.end(), all.begin() + static_cast<std::ptrdiff_t>(begin)));
+}
+
+TEST_CASE("a subscriber that joins late gets the record that the topic keeps, at once") {
+  const Folder folder;
+  const auto& path = folder.path();
+  folder.write("publish.yaml", R"(bodeflow: 1
+run: {clock: realtime, duration: 7.4 s, seed: 4, chunk: 50}
+variables: {domain: 0}
+blocks:
+  sines: {block: generators.multisine, sample_rate: 1 kHz, period: 100, lines: {first: 1, last: 9, step: 2}}
+  response: {block: spectrum.averaging_dft, period: 100, every: 25, form: known_input}
+  publish: {block: dds.publish_records, topic: state, keep_last: true, readers: 0, domain: "${domain}"}
+  keep: {block: output.records, file: sent.jsonl}
+connections: [sines -> response.input, sines -> response.output, response -> publish, response -> keep]
+)");
+  folder.write("subscribe.yaml", R"(bodeflow: 1
+run: {clock: simulated, duration: 1 s}
+variables: {domain: 0}
+blocks:
+  subscribe: {block: dds.subscribe_records, topic: state, keep_last: true, count: 1, domain: "${domain}"}
+  keep: {block: output.records, file: got.jsonl}
+connections: [subscribe -> keep]
+)");
+  Process publish(with_errors(graph((path / "publish.yaml").string(), path / "a", {})));
+  REQUIRE(begins(path / "a"));
+  shell("sleep 2.7");  // the first record is sent after 2.5 s, the second after 5 s
+  const auto joins = std::chrono::steady_clock::now();
+  Process late(with_errors(graph((path / "subscribe.yaml").string(), path / "b", {})));
+  const int subscribed = late.wait();
+  const auto joined = std::chrono::steady_clock::now();
+  const int published = publish.wait();
+  INFO(publish.output() << late.output());
+  REQUIRE(subscribed == 0);
+  CHECK(published == 0);
+  const std::string sent = folder.read("a/sent.jsonl"), got = folder.read("b/got.jsonl");
+  const auto body = [](const std::string& line) { return line.substr(line.find("\"type\"")); };
+  const bool first = body(got) == body(sent.substr(0, sent.find('\n') + 1));
+  CHECK((first || joined - joins > std::chrono::seconds(2)));
 }
 
 TEST_CASE("records travel whole from graph to graph") {

@@ -28,9 +28,9 @@ Limiter::Limiter(const plan::Limit& limit)
       lowest_(kInfinity),
       highest_(-kInfinity) {
   if (!limit.input) return;
-  for (Channel& channel : channels_) {
-    channel.before = std::clamp(0.0, limit.min, limit.max);
-    channel.has_before = true;
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    channels_[c].before = limit.start[c];
+    channels_[c].has_before = true;
   }
 }
 

@@ -16,8 +16,8 @@ class Limiter {
   explicit Limiter(const plan::Limit& limit);
 
   /// Sample `position` of the limit's channel `channel` (index into plan::Limit::channels): what may go on in its place, which is
-  /// the sample itself unless it is to be held within the limit. An input counts its rate of change from 0 or the nearest allowed
-  /// value, an output from its first sample. A sample that is not finite is replaced by the last one that was allowed.
+  /// the sample itself unless it is to be held within the limit. An input counts its rate of change from plan::Limit::start, an
+  /// output from its first sample. A sample that is not finite is replaced by the last one that was allowed.
   double look(std::size_t channel, double x, std::uint64_t position);
   /// Whether the last sample ends the run; whether it was held within the limit.
   bool stops() const { return violated_now_ && limit_.on_violation == graph::OnViolation::stop; }

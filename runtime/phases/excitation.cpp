@@ -93,13 +93,16 @@ class Looker final : public execute::Sink {
     for (std::uint64_t n = 0; n < count; ++n) {
       const double x = seen.stream.element == BF_C64 ? std::abs(static_cast<const std::complex<double>*>(samples)[n])
                                                      : static_cast<const double*>(samples)[n];
-      const std::uint64_t position = seen.samples + n;
+      if (!std::isfinite(x)) {
+        ++extremes.not_finite;
+        continue;
+      }
       const double largest = std::max(std::abs(extremes.lowest), std::abs(extremes.highest));
-      if (position > 0) extremes.steepest = std::max(extremes.steepest, std::abs(x - seen.last[channel]) * rate);
-      if (position == 0) extremes.lowest = extremes.highest = x;
+      if (extremes.finite == 0 || std::abs(x) > largest) extremes.largest_at_s = static_cast<double>(seen.samples + n) / rate;
+      if (extremes.finite++ == 0) extremes.lowest = extremes.highest = x;
       extremes.lowest = std::min(extremes.lowest, x);
       extremes.highest = std::max(extremes.highest, x);
-      if (position > 0 && std::abs(x) > largest) extremes.largest_at_s = static_cast<double>(position) / rate;
+      extremes.steepest = std::max(extremes.steepest, std::abs(x - seen.last[channel]) * rate);
       seen.last[channel] = x;
     }
   }
@@ -147,14 +150,14 @@ graph::Phase part_of(const graph::Phase& phase, const Marks& chosen, const std::
 class Finder {
  public:
   explicit Finder(const graph::Phase& phase) : phase_(phase), paths_(phase), unknown_(paths_.none()) {
-    for (std::size_t i = 0; i < phase.blocks.size(); ++i) unknown_[i] = phase.blocks[i].type->has_role("device");
+    for (std::size_t i = 0; i < phase.blocks.size(); ++i) unknown_[i] = is_outside(phase.blocks[i]);
     for (const auto& reference : phase.references) unknown_[static_cast<std::size_t>(reference.to.block)] = true;
     dependent_ = paths_.behind(unknown_);
   }
 
   Excitations inputs() {
     for (const auto& edge : phase_.streams)
-      if (phase_.blocks[static_cast<std::size_t>(edge.to.block)].type->has_role("device")) add_input(edge);
+      if (is_outside(phase_.blocks[static_cast<std::size_t>(edge.to.block)])) add_input(edge);
     return std::move(found_);
   }
 
@@ -211,6 +214,8 @@ double end_of(const plan::Facts& facts) {
 }
 
 }  // namespace
+
+bool is_outside(const graph::Block& block) { return block.type->has_role("device") || block.type->has_role("network"); }
 
 Excitations excitations_of(const graph::Phase& phase, const plan::Facts& facts, Registry& registry, double most_s) {
   Finder finder(phase);

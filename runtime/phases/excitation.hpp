@@ -4,23 +4,27 @@
 
 namespace bodeflow::phases {
 
-/// What one channel of a stream does in a run.
+/// Whether a block reaches what is outside of the run: a device, or a topic of the network.
+bool is_outside(const graph::Block& block);
+
+/// What one channel of a stream does in a run. Extremes are those of the finite samples.
 struct Extremes {
-  double lowest = 0.0, highest = 0.0;  ///< of a complex stream: 0 and the greatest magnitude
-  double largest_at_s = 0.0;           ///< when its magnitude is greatest
-  double steepest = 0.0;               ///< change per second between neighbours
+  std::uint64_t finite = 0, not_finite = 0;  ///< samples
+  double lowest = 0.0, highest = 0.0;        ///< of a complex stream those of the magnitude
+  double largest_at_s = 0.0;                 ///< when the magnitude is greatest
+  double steepest = 0.0;                     ///< change per second between neighbours, from 0 to the first one
 };
 
-/// A stream that goes to a device, or to blocks that depend on one.
+/// A stream that goes outside, or to blocks that depend on what is there.
 struct Excitation {
   graph::End from;
   std::vector<Extremes> channels;  ///< empty: no sample
 };
 
-/// What a phase puts on one stream input of a device.
+/// What a phase puts on one stream input of a device or of the network.
 struct DeviceInput {
   graph::End to;
-  /// Blocks in front that make it unknown before the run: devices, and those that take records of earlier phases.
+  /// Blocks in front that make it unknown before the run: those outside, and those that take records of earlier phases.
   std::vector<int> depends_on;
   std::vector<std::size_t> excitations;  ///< the input's own where it depends on none, else what is known in front of it
 };
@@ -33,8 +37,8 @@ struct Excitations {
   std::string failure;  ///< why there are no streams
 };
 
-/// The excitation of a phase's devices, found before anything moves: blocks in front of them that depend on no device and on no
-/// earlier phase are made anew and run by themselves, simulated, for at most `most_s` seconds of computing. No device is opened.
+/// What a phase puts outside, found before anything moves: blocks in front that depend on nothing outside and on no earlier phase
+/// are made anew and run by themselves, simulated, for at most `most_s` seconds of computing. No device is opened.
 Excitations excitations_of(const graph::Phase& phase, const plan::Facts& facts, Registry& registry, double most_s = 10.0);
 
 }  // namespace bodeflow::phases

@@ -6,7 +6,7 @@
 namespace bodeflow::phases {
 
 /// Tells of the limits of one run of a phase: each first violation while it runs, in the events and, unless it ends the run, as a
-/// warning; how many there were, at the end.
+/// warning; how many there were, at the end. Of a sweep, whose runs are processes of their own, when all have ended.
 class LimitTeller {
  public:
   /// All of them outlive it.
@@ -16,6 +16,8 @@ class LimitTeller {
 
   void violated(int limit, const execute::Violation& violation) const;
   void ended(const execute::Outcome& outcome) const;
+  /// `runs`: the limits of each run as its manifest has them.
+  void swept(const std::vector<nlohmann::json>& runs) const;
 
  private:
   const graph::Phase& phase_;

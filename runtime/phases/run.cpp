@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "phases/condition.hpp"
+#include "phases/excitation.hpp"
 #include "phases/limits.hpp"
 #include "phases/sweep.hpp"
 #include "record/pacing.hpp"
@@ -67,11 +68,11 @@ RunResult run_once(const graph::Phase& phase, Prepared prepared, record::RunDire
 }
 
 /// A sweep; who looks on sees its merged records.
-RunResult watched_sweep(const graph::Graph& graph, const graph::Phase& phase, record::RunDirectory& directory,
-                        const RunOptions& options, int repeat) {
-  if (options.watch == nullptr) return run_sweep(graph, phase, directory, options);
+RunResult watched_sweep(const graph::Phase& phase, const plan::Plan& plan, int repeat, record::RunDirectory& directory,
+                        const HostServices& services, const RunOptions& options) {
+  if (options.watch == nullptr) return run_sweep(phase, plan, repeat, directory, services, options);
   options.watch->begin_sweep(phase, repeat);
-  RunResult result = run_sweep(graph, phase, directory, options);
+  RunResult result = run_sweep(phase, plan, repeat, directory, services, options);
   for (std::size_t b = 0; b < phase.blocks.size(); ++b)
     for (const auto& port : phase.blocks[b].type->ports) {
       if (port.kind != BF_MESSAGE || port.direction != BF_OUT) continue;
@@ -111,9 +112,7 @@ RunResult rejection(const graph::Phase& phase, Problems problems) {
 }
 
 RunResult::Status failure_of(const graph::Block& block) {
-  const auto& roles = block.type->roles;
-  const bool device = std::find(roles.begin(), roles.end(), "device") != roles.end();
-  return device ? RunResult::Status::device : RunResult::Status::failed;
+  return is_outside(block) ? RunResult::Status::device : RunResult::Status::failed;
 }
 
 const char* status_word(RunResult::Status status) {
@@ -187,7 +186,7 @@ RunResult run(const graph::Graph& graph, std::vector<Prepared> prepared, Registr
               const Services& services, const RunOptions& options) {
   const auto run_phase = [&](std::size_t index, int repeat) -> RunResult {
     const graph::Phase& phase = graph.phases[index];
-    if (!phase.sweep.empty()) return watched_sweep(graph, phase, directory, options, repeat);
+    if (!phase.sweep.empty()) return watched_sweep(phase, prepared[index].plan, repeat, directory, *services.host(), options);
     if (repeat > 0) {
       auto again = prepare(phase, registry, services.host(), options.plan);
       if (!again) return rejection(phase, again.error());

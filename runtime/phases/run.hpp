@@ -29,8 +29,8 @@ struct RunOptions {
 };
 
 struct RunResult {
-  /// unreachable: a host of the lab is not there, or does not fit; device: a block of role `device` ended the run; limit: a limit
-  /// of the graph did.
+  /// unreachable: a host of the lab is not there, or does not fit; device: a device or a block of the network ended the run;
+  /// limit: a limit of the graph did.
   enum class Status { complete, rejected, failed, interrupted, unreachable, device, limit };
   Status status = Status::complete;
   std::string phase;  ///< in which it ended

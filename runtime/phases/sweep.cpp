@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "graph/load.hpp"
+#include "phases/limits.hpp"
 #include "phases/worker_pool.hpp"
 
 namespace bodeflow::phases {
@@ -87,9 +88,9 @@ RunResult failed(const graph::Phase& phase, std::string reason) {
   return {RunResult::Status::failed, phase.name, "", std::move(reason), {}, false};
 }
 
-/// Merges what the runs sent, and takes over their hashes. Returns what is lost, empty: nothing.
+/// Merges what the runs sent, and takes over their hashes and what their limits met. Returns what is lost, empty: nothing.
 std::string merge_runs(const graph::Phase& phase, const fs::path& folder, const std::vector<std::vector<std::string>>& values,
-                       record::RunDirectory& directory) {
+                       record::RunDirectory& directory, const LimitTeller& limits) {
   std::string lost;
   for_each_message_output(phase, [&](const std::string& block, const std::string& port) {
     std::vector<SharedRecord> records;
@@ -106,20 +107,24 @@ std::string merge_runs(const graph::Phase& phase, const fs::path& folder, const 
       lost = fmt::format("the records of '{}.{}' can't be merged", block, port);
     }
   });
+  std::vector<nlohmann::json> limits_met;
   for (std::size_t i = 0; i < values.size() && lost.empty(); ++i) {
     std::ifstream file(folder / std::to_string(i) / "manifest.json");
     const auto manifest = nlohmann::json::parse(file, nullptr, false);
     if (!manifest.is_object()) return fmt::format("run {} of the sweep left no manifest", i);
+    limits_met.push_back(manifest.value(nlohmann::json::json_pointer("/phases/0/limits"), nlohmann::json::array()));
     const auto own = manifest.value("hashes", nlohmann::json::object());
     for (const auto& [key, hash] : own.items())
       directory.add_hashes({{fmt::format("sweep/{}/{}/{}", phase.name, i, key), hash.get<std::string>()}});
   }
+  limits.swept(limits_met);
   return lost;
 }
 
 }  // namespace
 
-RunResult run_sweep(const graph::Graph&, const graph::Phase& phase, record::RunDirectory& directory, const RunOptions& options) {
+RunResult run_sweep(const graph::Phase& phase, const plan::Plan& plan, int repeat, record::RunDirectory& directory,
+                    const HostServices& services, const RunOptions& options) {
   if (const auto known = initial_records(phase, directory); !known)
     return {RunResult::Status::rejected, phase.name, "", to_string(known.error()), known.error(), false};
   const auto values = combinations(phase.sweep);
@@ -148,7 +153,8 @@ RunResult run_sweep(const graph::Graph&, const graph::Phase& phase, record::RunD
     return result;
   }
 
-  if (const std::string lost = merge_runs(phase, folder, values, directory); !lost.empty()) return failed(phase, lost);
+  const LimitTeller limits(phase, repeat, plan, directory, services);
+  if (const std::string lost = merge_runs(phase, folder, values, directory, limits); !lost.empty()) return failed(phase, lost);
   directory.event("sweep ends", {{"phase", phase.name}});
   return {};
 }

@@ -7,8 +7,8 @@ namespace bodeflow::phases {
 /// Runs a phase once for every combination of its sweep's values (the first axis varies slowest), each in a worker process of
 /// its own, as many at a time as there are cores; merges the records in that order, so that the result does not depend on
 /// which worker ends first. The runs' own directories lie below `sweep/<phase>/<index>`.
-RunResult run_sweep(const graph::Graph& graph, const graph::Phase& phase, record::RunDirectory& directory,
-                    const RunOptions& options);
+RunResult run_sweep(const graph::Phase& phase, const plan::Plan& plan, int repeat, record::RunDirectory& directory,
+                    const HostServices& services, const RunOptions& options);
 
 /// The exit code with which a worker says that a device ended its run.
 inline constexpr int kDeviceEnded = 5;

@@ -8,6 +8,7 @@
 
 #include "graph/node.hpp"
 #include "graph/scalar.hpp"
+#include "plan/join_limits.hpp"
 #include "plan/names.hpp"
 #include "plan/plan.hpp"
 
@@ -104,7 +105,7 @@ class Reader {
   }
 
   void find_latency() {
-    if (written_.input) return;
+    if (written_.input && written_.on_violation != graph::OnViolation::stop) return;
     const auto block = static_cast<std::size_t>(written_.port.block);
     const auto threads = static_cast<std::int64_t>(plan_.partitions.size());
     limit_.latency_samples = plan_.repetitions * facts_.blocks[block].repetitions * flow_->samples * threads;
@@ -135,6 +136,7 @@ tl::expected<std::vector<Limit>, Problems> limits_of(const graph::Phase& phase, 
   std::vector<Limit> limits;
   Problems problems;
   for (const graph::Limit& written : phase.limits) limits.push_back(Reader(phase, facts, plan, written, problems).read());
+  if (problems.empty()) join_limits(phase, limits, problems);
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return limits;
 }
@@ -168,9 +170,11 @@ std::string bounds_text(const Limit& limit) {
 
 std::string to_text(const Limit& limit) {
   const std::string channel = limit.all_channels ? "" : ", channel " + limit.names.front();
-  const std::string when =
-      limit.input ? "from the same sample on"
-                  : fmt::format("within {} ({})", count_text(limit.latency_samples, "sample"), seconds_text(limit.latency_s));
+  const bool ends_behind = limit.input && limit.on_violation == graph::OnViolation::stop;
+  std::string when = limit.input ? "from the same sample on" : "";
+  if (!limit.input || ends_behind)
+    when += fmt::format("{}within {} ({})", ends_behind ? ", other blocks " : "", count_text(limit.latency_samples, "sample"),
+                        seconds_text(limit.latency_s));
   return fmt::format("{}{}: {}; {}, {}", limit.signal, channel, bounds_text(limit), action_name(limit.on_violation), when);
 }
 

@@ -27,14 +27,17 @@ struct Limit {
   double sample_rate_hz = 0.0;
   graph::OnViolation on_violation = graph::OnViolation::stop;
   bool input = false;
-  /// Samples of the signal from a violation to its effect, at most: 0 at an input; at an output a chunk, and one for each
-  /// further thread. In seconds too.
+  /// An input's value before its first sample, by channel of `channels`: the one nearest to 0 that all limits of the port allow.
+  std::vector<double> start;
+  /// Samples of the signal from a violation until it has had its effect on all blocks, at most: 0 where an input is held within
+  /// the limit; where the run ends a chunk, and one for each further thread (a block whose input ends it gets nothing from the
+  /// violating sample on). In seconds too.
   std::int64_t latency_samples = 0;
   double latency_s = 0.0;
 };
 
-/// The limits of a phase in its order. Errors: a port without stream, an unknown channel, a wrong unit, a bound that no value
-/// fulfils, and a latency longer than the limit's time, with what to change.
+/// The limits of a phase in its order. Errors: a port without stream, an unknown channel, a wrong unit, bounds that no value
+/// fulfils, of one limit or of several, and a latency longer than the limit's time, with what to change.
 tl::expected<std::vector<Limit>, Problems> limits_of(const graph::Phase& phase, const Facts& facts, const Plan& plan);
 
 /// "clamp", "stop", "warn".

@@ -43,9 +43,9 @@ class RunDirectory {
   /// Puts a record into the results (merged sweeps).
   void set_result(const std::string& phase, const std::string& block, const std::string& port, const SharedRecord& record);
 
-  /// Adds hashes that were made elsewhere (the runs of a sweep) to the manifest's.
   /// As Manifest::add_host.
   void add_host(const std::string& host, const graph::Phase& phase, int repeat, const nlohmann::json& end);
+  /// Adds hashes that were made elsewhere (the runs of a sweep) to the manifest's.
   void add_hashes(const std::vector<std::pair<std::string, std::string>>& hashes);
 
   /// Notes in the manifest and the events that samples are missing in a stream.

@@ -115,13 +115,35 @@ TEST_CASE("limits: a sweep runs with them and ends by them") {
   CHECK(fine.exit_code == 0);
 }
 
+TEST_CASE("limits: a sweep whose runs were held within them says so") {
+  const Folder folder;
+  folder.write("graph.yaml",
+               "bodeflow: 1\nphases:\n  - name: gains\n    run: {duration: 1 s}\n    blocks:\n"
+               "      tone: {block: generators.sine, sample_rate: 1 kHz, frequency: 10 Hz}\n"
+               "      gain: {block: filters.gain}\n"
+               "      dft: {block: spectrum.averaging_dft, period: 100, form: known_input, lines: {first: 1, last: 1}}\n"
+               "    connections: [tone -> gain -> dft.output, tone -> dft.input]\n"
+               "    limits: [{signal: dft.output, max: 5}, {signal: gain.out, min: -100}]\n"
+               "    sweep: {gain.gain: [1, 7, 10]}\n");
+  const auto ended = run_bodeflow({"run", "graph.yaml", "--out", "out"}, folder.path());
+  REQUIRE(ended.exit_code == 0);
+  CHECK_THAT(ended.err,
+             Contains("dft.output: in 2 of the 3 runs of the sweep samples were held within at most 5; in run 1 it was"));
+  const auto told = events(folder, "limit violated");
+  REQUIRE(told.size() == 1);
+  CHECK(told[0]["signal"] == "dft.output");
+  CHECK(told[0]["run"] == 1);
+  CHECK(told[0]["runs"] == 2);
+  CHECK(told[0]["bound"] == "max");
+}
+
 TEST_CASE("dry run: a graph without devices says so, with the limits of its signals") {
   const Folder folder;
   folder.write("graph.yaml", amplifier("  - {signal: amplifier.in, max: 50 V}\n"));
   const auto ended = run_bodeflow({"run", "graph.yaml", "--dry-run", "--out", "out"}, folder.path());
   INFO(ended.err);
   REQUIRE(ended.exit_code == 0);
-  CHECK_THAT(ended.out, Contains("No devices: nothing outside is moved.") &&
+  CHECK_THAT(ended.out, Contains("No devices, no network: nothing outside is moved.") &&
                             Contains("amplifier.in: at most 50 V; clamp, from the same sample on") &&
                             Contains("Nothing was run."));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
@@ -148,6 +170,9 @@ TEST_CASE("dry run: shows a device, its signals, limits, and the largest excitat
   CHECK_THAT(open.out, Contains("limit: at most 1300 rpm; stop, within 1 sample (10 ms)"));
   CHECK_THAT(open.out, Contains("largest excitation: 0 to 1000 rpm, largest at 2.5 s, changes of up to 500 rpm/s"));
 
+  const auto step = run_bodeflow({"run", "open.yaml", "--dry-run", "--set", "ramp.offset=100"}, folder.path());
+  CHECK_THAT(step.out, Contains("changes of up to 10000 rpm/s"));  // the drive begins at 0
+
   const auto json = run_bodeflow({"run", "open.yaml", "--dry-run", "--json"}, folder.path());
   const Json device = Json::parse(json.out)[0]["devices"][0];
   CHECK(device["name"] == "drive");
@@ -165,4 +190,24 @@ TEST_CASE("dry run: an excitation that depends on measurements is told to be bou
              Contains("largest excitation: not known before the run, it depends on 'drive'; its limits keep it within"));
   CHECK_THAT(ended.out, Contains("in front of it, reference.out: "));
   CHECK_THAT(ended.out, Contains("trace: drive.modbus_trace"));
+}
+
+TEST_CASE("dry run: what goes to the network is shown as what goes to a device") {
+  const auto ended = run_bodeflow({"run", BODEFLOW_SOURCE_DIR "/graphs/dds/publish.yaml", "--dry-run"});
+  INFO(ended.out << ended.err);
+  REQUIRE(ended.exit_code == 0);
+  CHECK_THAT(ended.out, Contains("Devices and network\n") && Contains(": dds.publish\n") && Contains("largest excitation: "));
+  CHECK_THAT(ended.out, !Contains("nothing outside"));
+}
+
+TEST_CASE("dry run: samples that are no finite numbers are counted") {
+  const Folder folder;
+  folder.write(
+      "graph.yaml",
+      "bodeflow: 1\nrun: {duration: 100 ms}\nblocks:\n  ramp: {block: generators.ramp, sample_rate: 100 Hz, slope: 1000}\n"
+      "  gain: {block: filters.gain, gain: 1e307}\n"
+      "  out: {block: dds.publish, topic: t}\nconnections: [ramp -> gain -> out]\n");
+  const auto ended = run_bodeflow({"run", "graph.yaml", "--dry-run"}, folder.path());
+  INFO(ended.out << ended.err);
+  CHECK_THAT(ended.out, Contains("0 to 1e+308, largest at 10 ms") && Contains("8 samples of it no finite number"));
 }

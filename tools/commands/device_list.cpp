@@ -80,8 +80,12 @@ std::string DeviceList::extremes_text(const phases::Excitation& excitation) cons
   const StreamFacts& facts = stream(excitation.from, false);
   if (excitation.channels.empty()) return "no samples";
   const auto one = [&](const phases::Extremes& e, const std::string& unit) {
-    return fmt::format("{:.6g} to {}, largest at {}, changes of up to {}", e.lowest, plan::value_text(e.highest, unit),
-                       plan::seconds_text(e.largest_at_s), plan::value_text(e.steepest, (unit.empty() ? "1" : unit) + "/s"));
+    const std::string none =
+        e.not_finite == 0 ? "" : plan::count_text(static_cast<std::int64_t>(e.not_finite), "sample") + " of it no finite number";
+    if (e.finite == 0) return none;
+    return fmt::format("{:.6g} to {}, largest at {}, changes of up to {}{}{}", e.lowest, plan::value_text(e.highest, unit),
+                       plan::seconds_text(e.largest_at_s), plan::value_text(e.steepest, (unit.empty() ? "1" : unit) + "/s"),
+                       none.empty() ? "" : "; ", none);
   };
   std::string text;
   for (std::size_t c = 0; c < std::min(excitation.channels.size(), kMostChannels); ++c)
@@ -149,21 +153,25 @@ std::string DeviceList::device_text(std::size_t block) const {
     const graph::End end{static_cast<int>(block), port};
     text += "  gives " + signal_text(end, false) + "\n" + limits_text(end, false);
   }
+  for (const graph::MessageEdge& edge : phase_.messages)
+    if (edge.to.block == static_cast<int>(block))
+      text += "  gets the records of " + plan::message_output(phase_, edge.from) + "\n";
   return text;
 }
+
+bool DeviceList::any() const { return std::any_of(phase_.blocks.begin(), phase_.blocks.end(), phases::is_outside); }
 
 std::string DeviceList::text() const {
   std::string text, others;
   for (std::size_t i = 0; i < phase_.blocks.size(); ++i)
-    if (is_device(i)) text += device_text(i);
+    if (is_outside(i)) text += device_text(i);
   for (std::size_t i = 0; i < phase_.limits.size(); ++i)
-    if (!is_device(static_cast<std::size_t>(phase_.limits[i].port.block)))
+    if (!is_outside(static_cast<std::size_t>(phase_.limits[i].port.block)))
       others += "  " + plan::to_text(prepared_.plan.limits[i]) + "\n";
   const std::string phase = phase_.name.empty() ? "" : fmt::format(" of phase '{}'", phase_.name);
-  std::string all = text.empty() ? fmt::format("No devices{}: nothing outside is moved.\n", phase)
-                                 : fmt::format("{}\n{}", bold("Devices" + phase), text);
-  if (!others.empty()) all += fmt::format("{}\n{}", bold("Limits of other signals"), others);
-  return all;
+  if (!text.empty()) text = fmt::format("\n{}\n{}", bold("Devices and network" + phase), text);
+  if (!others.empty()) text += fmt::format("\n{}\n{}", bold((any() ? "Limits of other signals" : "Limits") + phase), others);
+  return text;
 }
 
 Json DeviceList::signal_json(const graph::End& end, bool input) const {
@@ -190,8 +198,11 @@ Json DeviceList::input_json(const phases::DeviceInput& input) const {
       const phases::Excitation& excitation = excitations_.streams[known];
       Json channels = Json::array();
       for (const phases::Extremes& e : excitation.channels)
-        channels.push_back(
-            {{"lowest", e.lowest}, {"highest", e.highest}, {"largest_at_s", e.largest_at_s}, {"steepest_per_s", e.steepest}});
+        channels.push_back({{"lowest", e.lowest},
+                            {"highest", e.highest},
+                            {"largest_at_s", e.largest_at_s},
+                            {"steepest_per_s", e.steepest},
+                            {"not_finite", e.not_finite}});
       streams.push_back({{"signal", plan::stream_output(phase_, excitation.from)}, {"channels", channels}});
     }
   Json json{{"known", depends.empty() && excitations_.failure.empty()}, {"depends_on", depends}, {"streams", streams}};
@@ -219,7 +230,7 @@ Json DeviceList::device_json(std::size_t block) const {
 Json DeviceList::json() const {
   Json devices = Json::array(), limits = Json::array();
   for (std::size_t i = 0; i < phase_.blocks.size(); ++i)
-    if (is_device(i)) devices.push_back(device_json(i));
+    if (is_outside(i)) devices.push_back(device_json(i));
   for (const plan::Limit& limit : prepared_.plan.limits) limits.push_back(Json(plan::to_json(limit)));
   return {{"devices", devices}, {"limits", limits}};
 }

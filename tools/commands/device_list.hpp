@@ -7,19 +7,23 @@
 
 namespace bodeflow::tools {
 
-/// What of a phase is outside of the computer: devices with their parameters, the signals that they get and give, the limits of
-/// these, and the largest excitation of each input; then the limits of other signals. Its arguments outlive it.
+/// What of a phase is outside of the run: devices and topics of the network with their parameters, the signals that they get and
+/// give, the limits of these, and the largest excitation of each input; then the limits of other signals. Its arguments outlive
+/// it.
 class DeviceList {
  public:
   DeviceList(const graph::Phase& phase, const phases::Prepared& prepared, phases::Excitations excitations)
       : phase_(phase), prepared_(prepared), excitations_(std::move(excitations)) {}
 
+  /// Whether anything is outside.
+  bool any() const;
+  /// "" where there is nothing to tell.
   std::string text() const;
   /// {"devices": [...], "limits": [...]}: all limits of the phase.
   nlohmann::ordered_json json() const;
 
  private:
-  bool is_device(std::size_t block) const { return phase_.blocks[block].type->has_role("device"); }
+  bool is_outside(std::size_t block) const { return phases::is_outside(phase_.blocks[block]); }
   const StreamFacts& stream(const graph::End& end, bool input) const;
   std::string signal_text(const graph::End& end, bool input) const;
   std::string limits_text(const graph::End& end, bool input) const;

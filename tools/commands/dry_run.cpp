@@ -1,5 +1,7 @@
 #include "commands/dry_run.hpp"
 
+#include <algorithm>
+
 #include "commands/device_list.hpp"
 #include "commands/plans.hpp"
 #include "console/json_output.hpp"
@@ -26,7 +28,9 @@ int dry_run(const GraphOptions& options, const graph::Graph& graph, Registry& re
     return kDone;
   }
   print_plans(graph, *prepared, false);
-  for (const DeviceList& list : lists) fmt::print("\n{}", list.text());
+  for (const DeviceList& list : lists) fmt::print("{}", list.text());
+  if (std::none_of(lists.begin(), lists.end(), [](const DeviceList& list) { return list.any(); }))
+    fmt::print("\nNo devices, no network: nothing outside is moved.\n");
   fmt::print("\nNothing was run.\n");
   return kDone;
 }

@@ -63,7 +63,8 @@ int rerun(const Session& session, const RerunCommand& command) {
     return kUsage;
   }
   if (const std::string status = manifest->value("status", "?"); status != "complete") {
-    say_error(fmt::format("the run in '{}' is {}: only a complete run can be repeated and compared", command.directory, status));
+    say_error(fmt::format("the run in '{}' has the status '{}': only a complete run can be repeated and compared",
+                          command.directory, status));
     return kUsage;
   }
   RunGraph options;

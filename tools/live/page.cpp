@@ -32,7 +32,7 @@ constexpr const char* kBody = R"(<p class="over">bodeflow, live</p>
 <p id="reason" class="reason" hidden></p>
 <div class="bar" role="progressbar" aria-label="Progress"><div id="progress"></div></div>
 <dl id="figures"></dl>
-<section><h2>Graph</h2><div id="graph"><p>The run has not begun.</p></div></section>
+<section><h2>Graph</h2><div id="graph"></div></section>
 <section id="parameters-section" hidden><h2>Parameters</h2>
 <p id="read-only" class="note" hidden>This page only shows. To change parameters open the address that the command printed, with what stands behind its #.</p>
 <div class="scroll"><table class="stack"><thead><tr><th>Parameter</th><th>Now</th><th>Change to</th></tr></thead><tbody id="parameters"></tbody></table></div></section>

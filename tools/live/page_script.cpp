@@ -44,9 +44,9 @@ async function get(path) {
 
 function head(state) {
   by('title').textContent = state.title;
-  const words = {running: 'running', complete: 'complete', partial: 'interrupted', failed: 'failed', starting: 'starting'};
+  const words = {running: 'running', complete: 'complete', partial: 'interrupted', failed: 'failed', limit: 'ended by a limit', starting: 'starting'};
   by('badge').textContent = state.status === 'complete' ? 'run complete' : words[state.status] || state.status;
-  by('badge').className = 'badge ' + state.status;
+  by('badge').className = 'badge ' + (state.status === 'limit' ? 'partial' : state.status);
   document.title = by('badge').textContent + ': ' + title;
   const phase = state.phase ? 'Phase ' + state.phase + (state.repeat > 0 ? ', repetition ' + (state.repeat + 1) : '') : '';
   by('where').textContent = [phase, state.directory].filter(Boolean).join(' · ');

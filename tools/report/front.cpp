@@ -7,17 +7,12 @@
 
 #include "graph/load.hpp"
 #include "report/graph_drawing.hpp"
-#include "report/numbers.hpp"
+#include "report/json_fields.hpp"
 
 namespace bodeflow::tools::report {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string text_in(const ordered_json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
-}
 
 /// "2026-11-22T04:31:15.298Z" as "2026-11-22 04:31:15 UTC".
 std::string moment(const std::string& time) {
@@ -30,6 +25,8 @@ std::string title_of(const RunData& run) {
   const std::string graph = text_in(run.manifest, "graph");
   return graph.empty() ? run.directory.filename().string() : graph;
 }
+
+std::string status_text(const std::string& status) { return status == "limit" ? "ended by a limit" : status; }
 
 /// The time that the phases took together on their own clocks, and on ours; NaN where not told.
 std::pair<double, double> times_of(const RunData& run) {
@@ -66,7 +63,7 @@ Markup page_header(const RunData& run) {
   Markup header;
   header.open("header").element("p", {{"class", "over"}}, "bodeflow run report").element("h1", title_of(run));
   const std::string style = run.status == "complete" || run.status == "failed" ? run.status : "partial";
-  header.open("p").element("span", {{"class", "badge " + style}}, run.status).close("p");
+  header.open("p").element("span", {{"class", "badge " + style}}, status_text(run.status)).close("p");
   Facts facts;
   const auto add = [&](const char* name, const std::string& value) {
     if (!value.empty()) facts.emplace_back(name, value);
@@ -86,7 +83,7 @@ std::vector<Warning> warnings_of(const RunData& run) {
   if (run.status != "complete") {
     const std::string reason =
         run.reason.empty() ? "The run did not come to its end: results may be missing or partial." : run.reason;
-    warnings.push_back({fmt::format("Run: {}", run.status), reason, true});
+    warnings.push_back({"Run: " + status_text(run.status), reason, true});
   }
   for (const auto& problem : run.problems) warnings.push_back({"This report", problem, true});
   const std::size_t first = warnings.size();

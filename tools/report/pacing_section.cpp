@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/numbers.hpp"
+#include "report/json_fields.hpp"
 
 namespace bodeflow::tools::report {
 namespace {
@@ -21,18 +21,6 @@ struct Paced {
   std::uint64_t repeat = 0;
   const ordered_json* pacing = nullptr;
 
-  double number(const char* key) const {
-    const auto found = pacing->find(key);
-    return found != pacing->end() && found->is_number() ? found->get<double>() : kNaN;
-  }
-  std::uint64_t count(const char* key) const {
-    const auto found = pacing->find(key);
-    return found != pacing->end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
-  }
-  std::string text(const char* key) const {
-    const auto found = pacing->find(key);
-    return found != pacing->end() && found->is_string() ? found->get<std::string>() : "";
-  }
   std::string title() const {
     std::string title = phase;
     if (repeat > 0) title += fmt::format("{}repetition {}", title.empty() ? "" : ", ", repeat + 1);
@@ -48,11 +36,7 @@ std::vector<Paced> paced_of(const ordered_json& manifest) {
     if (entries == manifest.end() || !entries->is_array()) continue;
     for (const auto& entry : *entries) {
       if (!entry.is_object() || !entry.contains("pacing") || !entry["pacing"].is_object()) continue;
-      Paced paced{"", "", 0, &entry["pacing"]};
-      if (entry.contains("host") && entry["host"].is_string()) paced.host = entry["host"].get<std::string>();
-      if (entry.contains("phase") && entry["phase"].is_string()) paced.phase = entry["phase"].get<std::string>();
-      if (entry.contains("repeat") && entry["repeat"].is_number_unsigned()) paced.repeat = entry["repeat"].get<std::uint64_t>();
-      all.push_back(std::move(paced));
+      all.push_back({text_in(entry, "host"), text_in(entry, "phase"), count_in(entry, "repeat"), &entry["pacing"]});
     }
   }
   return all;
@@ -99,11 +83,21 @@ Chart histogram(const Paced& paced) {
   return chart;
 }
 
+/// Threads went on without the priority: the system's refusal begins with it.
+bool was_refused(const Paced& paced, double priority) {
+  const auto texts = paced.pacing->find("not_permitted");
+  if (!std::isfinite(priority) || texts == paced.pacing->end() || !texts->is_array()) return false;
+  const std::string begin = fmt::format("priority {:.0f}", priority);
+  return std::any_of(texts->begin(), texts->end(),
+                     [&](const auto& text) { return text.is_string() && text.template get<std::string>().starts_with(begin); });
+}
+
 std::string settings_of(const Paced& paced) {
-  std::string text = paced.text("clock");
-  if (text == "realtime") text += ", on_overrun: " + paced.text("on_overrun");
-  const double priority = paced.number("priority");
+  std::string text = text_in(*paced.pacing, "clock");
+  if (text == "realtime") text += ", on_overrun: " + text_in(*paced.pacing, "on_overrun");
+  const double priority = number_in(*paced.pacing, "priority");
   text += std::isfinite(priority) ? fmt::format(", priority {:.0f}", priority) : ", without priority";
+  if (was_refused(paced, priority)) text += " (not permitted)";
   const auto cores = paced.pacing->find("cores");
   if (cores != paced.pacing->end() && cores->is_array() && !cores->empty()) text += ", cores " + cores->dump();
   return text;
@@ -124,9 +118,9 @@ Table table_of(const std::vector<Paced>& all) {
   const bool hosts = std::any_of(all.begin(), all.end(), [](const Paced& paced) { return !paced.host.empty(); });
   for (const Paced& paced : all) {
     table.rows.push_back({paced.phase.empty() ? "the run" : paced.phase, paced.host, settings_of(paced),
-                          counted(paced.count("chunks")), shown(1e6 * paced.number("median_s"), 3),
-                          shown(1e6 * paced.number("p99_s"), 3), shown(1e6 * paced.number("max_s")),
-                          counted(paced.count("overruns")), counted(paced.count("skipped"))});
+                          counted(count_in(*paced.pacing, "chunks")), shown(1e6 * number_in(*paced.pacing, "median_s"), 3),
+                          shown(1e6 * number_in(*paced.pacing, "p99_s"), 3), shown(1e6 * number_in(*paced.pacing, "max_s")),
+                          counted(count_in(*paced.pacing, "overruns")), counted(count_in(*paced.pacing, "skipped"))});
     if (!hosts) table.rows.back().erase(table.rows.back().begin() + 1);
   }
   if (!hosts) table.columns.erase(table.columns.begin() + 1);
@@ -159,7 +153,8 @@ void add_pacing(Page& page, const RunData& run) {
   std::vector<Chart> charts;
   for (const Paced& paced : all)
     if (Chart chart = histogram(paced); !chart.panels.empty() && charts.size() < kMostCharts) charts.push_back(std::move(chart));
-  const bool realtime = std::any_of(all.begin(), all.end(), [](const Paced& paced) { return paced.count("chunks") > 0; });
+  const bool realtime =
+      std::any_of(all.begin(), all.end(), [](const Paced& paced) { return count_in(*paced.pacing, "chunks") > 0; });
   if (realtime)
     page.paragraph(
         "A chunk is late by the time from its place on the clock to its begin. An overrun is a chunk whose time had come before "

@@ -1,17 +1,12 @@
 #include <fmt/format.h>
 
 #include "report/front.hpp"
-#include "report/numbers.hpp"
+#include "report/json_fields.hpp"
 
 namespace bodeflow::tools::report {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string text_in(const ordered_json& json, const char* key) {
-  const auto found = json.is_object() ? json.find(key) : json.end();
-  return json.is_object() && found != json.end() && found->is_string() ? found->get<std::string>() : "";
-}
 
 const ordered_json& list_in(const ordered_json& json, const char* key) {
   static const ordered_json kNone = ordered_json::array();

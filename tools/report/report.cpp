@@ -8,6 +8,7 @@
 
 #include "record/files.hpp"
 #include "report/front.hpp"
+#include "report/limits_section.hpp"
 #include "report/pacing_section.hpp"
 #include "report/sections.hpp"
 #include "report/streams.hpp"
@@ -99,6 +100,7 @@ tl::expected<WrittenReport, std::string> write_report(const ReportOptions& optio
   add_records(page, *run);
   add_warnings(page, {behind, warnings.end()});
   add_streams(page, *run, options.progress);
+  add_limits(page, *run);
   add_pacing(page, *run);
   add_what_was_done(page, *run, registry);
   add_provenance(page, *run);

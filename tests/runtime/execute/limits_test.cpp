@@ -192,7 +192,9 @@ TEST_CASE("limits: an input that stops the run lets nothing pass from the violat
       CHECK(result.stream("actuator.out").size() == one.position);
       CHECK(result.outcome.limits.at(0).first->position == one.position);
       CHECK(result.outcome.limits[0].first->bound == one.kind);
-      CHECK(result.limits[0].latency_samples == 0);
+      const auto latency = static_cast<std::size_t>(result.limits[0].latency_samples);
+      CHECK(latency == static_cast<std::size_t>(cut.chunk) * result.threads);
+      CHECK(result.stream("disturb.out").size() <= one.position + latency);
       CHECK(told == std::vector<int>{0});
     }
   }
@@ -282,6 +284,29 @@ TEST_CASE("limits: those of one signal act in order, each on what the one before
   CHECK(result.outcome.limits[1].violations == 349);
   CHECK(result.outcome.limits[1].highest == 200.0);
   CHECK(result.outcome.limits[2].violations == 0);
+}
+
+TEST_CASE("limits: a rate of its own begins where the bounds of another limit allow it") {
+  for (const bool rate_first : {false, true}) {
+    Line line(0.0, 0, 2.0);
+    for (const bool rate : {rate_first, !rate_first}) {
+      graph::Limit& limit = line.bench.limit_input("actuator.in");
+      if (rate)
+        limit.rate = quantity(1000.0);
+      else
+        limit.min = quantity(100.0);
+    }
+    const Result result = line.bench.run();
+    const auto& got = result.stream("actuator.out");
+    REQUIRE(got.size() == 500);
+    double before = 100.0;
+    for (const double y : got) {
+      REQUIRE(y >= 100.0);
+      REQUIRE(std::abs(y - before) <= 1.0 + 1e-12);
+      before = y;
+    }
+    CHECK(got.back() > 450.0);
+  }
 }
 
 TEST_CASE("limits: of two that stop a block's run the earlier one does") {

@@ -114,6 +114,43 @@ TEST_CASE("limits: a time that the plan does not keep is refused with what to ch
   CHECK(problem(net, options) == "no problem");
 }
 
+TEST_CASE(
+    "limits: an input that ends the run keeps its block from the sample, and the others within the latency that its time asks "
+    "for") {
+  Net net = bench();
+  graph::Limit& limit = add(net, true, {1, 0});
+  limit.channel = "speed";
+  limit.max = at("1650 rpm", 30);
+  limit.on_violation = graph::OnViolation::stop;
+  const plan::Limit planned = net.plan(64).limits.at(0);
+  CHECK(planned.latency_samples == 64);
+  CHECK(planned.latency_s == Approx(0.064));
+  CHECK(plan::to_text(planned) ==
+        "gain.in, channel speed: at most 1650 rpm; stop, from the same sample on, other blocks within 64 samples (64 ms)");
+  limit.time_s = 0.02;
+  CHECK(problem(net).substr(0, 53) == "g.yaml:50:60: limits: 'gain.in' must act within 20 ms");
+}
+
+TEST_CASE("limits: those of one port start at a value that all of them allow, and are refused where there is none") {
+  Net net = bench();
+  for (const char* channel : {"speed", "torque", "speed", "speed"}) add(net, true, {1, 0}).channel = channel;
+  auto& limits = net.phase.limits;
+  limits[0].min = at("300 rpm", 30);
+  limits[1].min = at("-7 Nm", 30);
+  limits[1].max = at("-2 Nm", 40);
+  limits[2].rate = at("1 rpm/s", 30);
+  limits[3].max = at("-5 rpm", 30);
+  limits[3].on_violation = graph::OnViolation::warn;  // changes nothing for the others
+  const plan::Plan plan = net.plan(64);
+  CHECK(plan.limits[0].start == std::vector<double>{300.0});
+  CHECK(plan.limits[1].start == std::vector<double>{-2.0});
+  CHECK(plan.limits[2].start == std::vector<double>{300.0});
+  limits[3].on_violation = graph::OnViolation::stop;
+  limits[3].place.line = 51;
+  CHECK(problem(net) ==
+        "g.yaml:51:5: limits: no value of 'gain.in' is at most -5 rpm and, as line 50 wants it, at least 300 rpm");
+}
+
 TEST_CASE("limits: wrong channels, units and bounds are refused where they stand") {
   struct Case {
     std::string channel, min, max, rate, expected;

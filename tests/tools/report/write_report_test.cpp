@@ -162,8 +162,9 @@ TEST_CASE("report: paced phases show on each host how late their chunks began an
   folder.write("manifest.json", manifest(paced));
   const WrittenReport report = written(folder);
   const std::string page = folder.read("report.html");
-  for (const char* text : {"id=\"Pacing\"", "60,010", "13.5", "2500", "realtime, on_overrun: skip, priority 80, cores [1]",
-                           "hardware, without priority", "bench", "priority 80 is not permitted"}) {
+  for (const char* text :
+       {"id=\"Pacing\"", "60,010", "13.5", "2500", "realtime, on_overrun: skip, priority 80 (not permitted), cores [1]",
+        "hardware, without priority", "bench", "priority 80 is not permitted"}) {
     INFO(text);
     CHECK(page.find(text) != std::string::npos);
   }
@@ -172,6 +173,42 @@ TEST_CASE("report: paced phases show on each host how late their chunks began an
 
   folder.write("manifest.json", manifest({{"bins", {"x", -1, nullptr, 1e300}}, {"chunks", -3}, {"cores", "all"}}));
   written(folder);
+}
+
+TEST_CASE("report: limits stand in a table with what came and how often they were left") {
+  const nlohmann::json speed = {{"signal", "drive.feedback"},
+                                {"channels", {"speed"}},
+                                {"unit", "rpm"},
+                                {"min", nullptr},
+                                {"max", 450.0},
+                                {"rate_per_s", 2000.0},
+                                {"on_violation", "stop"},
+                                {"samples", 98},
+                                {"violations", 1},
+                                {"lowest", -6.3},
+                                {"highest", 456.0},
+                                {"steepest_per_s", 555.0},
+                                {"first", {{"bound", "max"}, {"value", 456.0}, {"time_s", 1.94}}},
+                                {"ended_run", true}};
+  nlohmann::json broken = speed;
+  broken["first"]["value"] = "nan";
+  broken["ended_run"] = 3;
+  const auto manifest = [](const nlohmann::json& limits) {
+    return nlohmann::json{
+        {"status", "limit"}, {"reason", "limit violated"}, {"phases", {{{"phase", "loop"}, {"limits", limits}}}}}
+        .dump();
+  };
+  const Folder folder;
+  folder.write("result.json", test::result_with({{"r", test::response_record(1, 1)}}).dump());
+  folder.write("manifest.json", manifest({speed, broken, 5}));
+  written(folder);
+  const std::string page = folder.read("report.html");
+  for (const char* text :
+       {"id=\"Limits\"", "loop.drive.feedback speed", "at most 450 rpm, changes of at most 2000 rpm/s", "ended the run",
+        "1 of 98, the first at 1.94 s: 456 rpm", "the first at 1.94 s: nan", "ended by a limit"}) {
+    INFO(text);
+    CHECK(page.find(text) != std::string::npos);
+  }
 }
 
 TEST_CASE("report: a folder that holds no run is refused by name") {

@@ -185,3 +185,12 @@ TEST_CASE("the graph in the README runs as it stands and measures the plant that
   const auto& gain = result["results"]["dft"]["arrays"]["response"]["data"][0];
   CHECK(gain[0].get<double>() == Approx(1.0).margin(0.05));  // 1 Hz, far below the resonance at 100 rad/s
 }
+
+TEST_CASE("run: a topic without its readers ends with the exit code of devices and network") {
+  const Folder folder;
+  const auto ended = run_bodeflow({"run", BODEFLOW_SOURCE_DIR "/graphs/dds/publish.yaml", "--set", "publish.tolerance=100 ms",
+                                   "--set", "topic=nobody_reads_this", "--out", "out"},
+                                  folder.path());
+  CHECK(ended.exit_code == 5);
+  CHECK_THAT(ended.err, Contains("block 'publish': topic 'nobody_reads_this': only 0 of 1 readers came"));
+}

@@ -9,6 +9,12 @@
 namespace bodeflow {
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitizerTells = true;
+#else
+constexpr bool kSanitizerTells = false;
+#endif
+
 thread_local const AtWork* at_work = nullptr;
 
 void say(const char* text) {
@@ -40,12 +46,11 @@ AtWork::~AtWork() { at_work = before_; }
 AtWork::Block AtWork::block() { return at_work == nullptr ? Block{} : at_work->where_(at_work->what_); }
 
 void tell_crashes() {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  if (kSanitizerTells) return;
   struct sigaction action {};
   action.sa_handler = on_crash;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) (void)sigaction(number, &action, nullptr);
-#endif
 }
 
 }  // namespace bodeflow

@@ -5,12 +5,16 @@
 #include <cstring>
 #include <ctime>
 #include <new>
+#include <utility>
+
+#include "transport/progress.hpp"
 
 namespace bodeflow::transport {
 namespace {
 
 constexpr std::uint32_t kMostDomain = 232;  // ports end there
 constexpr double kLongestTolerance = 86400.0;
+constexpr double kShownStall_s = 0.7;
 
 struct Free {
   void operator()(std::uint8_t* bytes) const { std::free(bytes); }
@@ -46,15 +50,51 @@ GoOn patient(const GoOn& go_on) {
   };
 }
 
+/// How long the samples of a message last, in seconds: so long the next one may take.
+double length_of(const Header& header) {
+  return header.kind == Kind::samples && header.rate_num > 0
+             ? static_cast<double>(header.count) * static_cast<double>(header.rate_den) / static_cast<double>(header.rate_num)
+             : 0.0;
+}
+
+/// Tells a block's log, once each time, that its topic stands still.
+class StallTeller {
+ public:
+  explicit StallTeller(std::string topic) : topic_(std::move(topic)) {}
+
+  /// `due_s`: the wait that is in order.
+  void look(const bf_host* host, const EdgeState& state, double due_s, const char* what) {
+    if (told_ || state.stalled_s < due_s + kShownStall_s) return;
+    told_ = true;
+    write(host, BF_LOG_WARNING, std::string("stands still: ") + what + " for " + seconds_text(due_s + kShownStall_s));
+  }
+  void goes_on(const bf_host* host) {
+    if (std::exchange(told_, false)) write(host, BF_LOG_INFO, "goes on");
+  }
+
+ private:
+  void write(const bf_host* host, std::int32_t level, const std::string& text) const {
+    const auto* log = static_cast<const bf_log*>(host->extension(host, BF_EXTENSION_LOG));
+    if (log != nullptr) log->write(host, level, ("topic '" + topic_ + "' " + text).c_str());
+  }
+
+  std::string topic_;
+  bool told_ = false;
+};
+
 struct TopicWriter {
   std::unique_ptr<Outlet> outlet;
   GoOn go_on;
+  StallTeller stall;
   std::vector<std::span<const std::byte>> parts;
+  bool begun = false;
 };
 
 struct TopicReader {
   std::unique_ptr<Inlet> inlet;
   GoOn go_on;
+  StallTeller stall;
+  bool streams = false;  ///< it has carried samples: records may be rare
   Message message;
   Aligned payload;
   bf_part part{};
@@ -118,7 +158,7 @@ struct ServiceFunctions {
                     edge.epoch = static_cast<std::uint32_t>(std::time(nullptr));  // a writer that comes later is higher
                     auto outlet = open_outlet(participant, edge);
                     if (!outlet) return tl::unexpected(outlet.error().text);
-                    return new TopicWriter{std::move(*outlet), patient(service.go_on_), {}};
+                    return new TopicWriter{std::move(*outlet), patient(service.go_on_), StallTeller(edge.topic), {}};
                   });
   }
 
@@ -127,7 +167,8 @@ struct ServiceFunctions {
                   [](Service& service, const auto& participant, const Edge& edge) -> tl::expected<void*, std::string> {
                     auto inlet = open_inlet(participant, edge);
                     if (!inlet) return tl::unexpected(inlet.error().text);
-                    return new TopicReader{std::move(*inlet), patient(service.go_on_), {}, {}, {}};
+                    return new TopicReader{
+                        std::move(*inlet), patient(service.go_on_), StallTeller(edge.topic), false, {}, {}, {}};
                   });
   }
 
@@ -138,7 +179,16 @@ struct ServiceFunctions {
       for (std::uint64_t i = 0; i < message->part_count; ++i) {
         to.parts.push_back(std::as_bytes(std::span(message->parts[i].bytes, message->parts[i].size)));
       }
-      return to.outlet->send(header_of(*message), to.parts, to.go_on);
+      const Header header = header_of(*message);
+      const double due_s = length_of(header);
+      const auto go_on = [&] {
+        if (to.begun) to.stall.look(host, to.outlet->state(), due_s, "its readers took nothing");
+        return !to.go_on || to.go_on();
+      };
+      auto sent = to.outlet->send(header, to.parts, go_on);
+      if (sent) to.stall.goes_on(host);
+      to.begun = sent.has_value();
+      return sent;
     });
   }
 
@@ -154,7 +204,12 @@ struct ServiceFunctions {
       auto& from = *static_cast<TopicReader*>(reader);
       message->kind = BF_MESSAGE_NONE;
       if (seconds < 0.0) {
-        auto next = from.inlet->next(from.go_on);
+        const double due_s = length_of(from.message.header);
+        const auto go_on = [&] {
+          if (from.streams) from.stall.look(host, from.inlet->state(), due_s, "nothing came");
+          return !from.go_on || from.go_on();
+        };
+        auto next = from.inlet->next(go_on);
         if (!next) return tl::unexpected(next.error());
         from.message = std::move(*next);
       } else {
@@ -163,6 +218,8 @@ struct ServiceFunctions {
         if (!*next) return {};
         from.message = std::move(**next);
       }
+      from.streams = from.message.header.kind == Kind::samples;
+      from.stall.goes_on(host);
       fill(*message, from);
       return {};
     });

@@ -125,6 +125,7 @@ TEST_CASE("a subscriber that joins a running publisher says where it begins and 
   REQUIRE(said.find(words) != std::string::npos);
   const auto begin = std::stoul(said.substr(said.find(words) + words.size()));
   CHECK(begin > 0);
+  CHECK(said.find("stands still") == std::string::npos);  // a message a second is what it brings
   REQUIRE(begin + rest.size() == all.size());
   CHECK(std::equal(rest.begin(), rest.end(), all.begin() + static_cast<std::ptrdiff_t>(begin)));
 }
@@ -165,6 +166,30 @@ connections: [subscribe -> keep]
   const auto body = [](const std::string& line) { return line.substr(line.find("\"type\"")); };
   const bool first = body(got) == body(sent.substr(0, sent.find('\n') + 1));
   CHECK((first || joined - joins > std::chrono::seconds(2)));
+}
+
+TEST_CASE("a topic whose writer is dead is told within a second, before the tolerance ends the run") {
+  for (const std::string latest : {"false", "true"}) {
+    const Folder folder;
+    folder.write("graph.yaml", R"(bodeflow: 1
+run: {clock: simulated, duration: 100 s}
+variables: {domain: 0, latest: false}
+blocks:
+  subscribe: {block: dds.subscribe, topic: dying, rate: 1 kHz, tolerance: 4 s, latest: "${latest}", domain: "${domain}"}
+record: [subscribe.out]
+)");
+    Process run(with_errors(graph((folder.path() / "graph.yaml").string(), folder.path() / "a", {"latest=" + latest})));
+    Process writer(peer("send", {"topic=dying", "open=1", "count=100000", "bytes=800", "pause_us=100000",
+                                 latest == "true" ? "lossless=0" : "lossless=1"}));
+    REQUIRE(begins(folder.path() / "a"));
+    REQUIRE(writer.prints("connected"));
+    shell("sleep 1.5");
+    writer.signal(9);
+    CHECK(run.prints("topic 'dying' stands still: nothing came for 0.8 s", 3.5));
+    CHECK(run.wait() == 1);
+    INFO(run.output());
+    CHECK(run.output().find("block 'subscribe': topic 'dying': ") != std::string::npos);
+  }
 }
 
 TEST_CASE("records travel whole from graph to graph") {

@@ -9,6 +9,7 @@
 #include "record/files.hpp"
 #include "report/front.hpp"
 #include "report/limits_section.hpp"
+#include "report/missing_section.hpp"
 #include "report/pacing_section.hpp"
 #include "report/sections.hpp"
 #include "report/streams.hpp"
@@ -97,6 +98,7 @@ tl::expected<WrittenReport, std::string> write_report(const ReportOptions& optio
   const auto behind = std::stable_partition(warnings.begin(), warnings.end(),
                                             [&](const Warning& warning) { return warning.bad || !finding_first; });
   add_warnings(page, {warnings.begin(), behind});
+  add_missing(page, *run);
   add_records(page, *run);
   add_warnings(page, {behind, warnings.end()});
   add_streams(page, *run, options.progress);

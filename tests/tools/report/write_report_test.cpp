@@ -211,6 +211,31 @@ TEST_CASE("report: limits stand in a table with what came and how often they wer
   }
 }
 
+TEST_CASE("report: samples that are missing because a host was lost stand there to the sample") {
+  const nlohmann::json gap = {{"phase", ""},   {"host", ""},    {"connection", "twice.out -> back.in"},
+                              {"first", 2300}, {"count", 1112}, {"from_s", 2.3},
+                              {"to_s", 3.412}, {"epoch", 1}};
+  const nlohmann::json restart = {{"phase", ""}, {"host", "bench"}, {"epoch", 1}, {"begin_s", 3.412}};
+  const Folder folder;
+  folder.write("result.json", test::result_with({{"r", test::response_record(1, 1)}}).dump());
+  const auto page = [&](const nlohmann::json& gaps, const nlohmann::json& restarts) {
+    folder.write("manifest.json", nlohmann::json{{"status", "complete"}, {"gaps", gaps}, {"restarts", restarts}}.dump());
+    written(folder);
+    return folder.read("report.html");
+  };
+  const std::string told = page(nlohmann::json::array({gap}), nlohmann::json::array({restart}));
+  for (const char* text : {"Missing samples", "twice.out -&gt; back.in", "launcher", "2,300", "3,411", "1,112", "3.412",
+                           "Host bench was lost", "restarted/bench"}) {
+    INFO(text);
+    CHECK(told.find(text) != std::string::npos);
+  }
+  CHECK(page(nlohmann::json::array(), nlohmann::json::array({restart}))
+            .find("No connection that another host reads misses a sample.") != std::string::npos);
+  CHECK(page(nlohmann::json::array({nullptr, {{"first", -1}, {"count", "x"}}}), nlohmann::json::array({3, {{"host", 5}}}))
+            .find("Missing samples") != std::string::npos);
+  CHECK(page(nullptr, nullptr).find("Missing samples") == std::string::npos);
+}
+
 TEST_CASE("report: a folder that holds no run is refused by name") {
   const Folder folder;
   const auto report = write_report({folder.path(), {}}, no_plugins());

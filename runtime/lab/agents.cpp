@@ -1,163 +1,27 @@
+// The lab as a launcher or a person sees it: who is there, and what is asked of them.
 #include "lab/agents.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <signal.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <chrono>
-#include <future>
-#include <map>
 #include <random>
 #include <thread>
 
-#include "graph/node.hpp"
-#include "lab/part_process.hpp"
+#include "lab/agent_topics.hpp"
 
 namespace bodeflow::lab {
-namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-const std::string kBoard = "bodeflow/agents";
-
-std::string mailbox_of(const std::string& agent) { return "bodeflow/agent/" + agent; }
-
-constexpr int kLooks = 20;  ///< of 50 ms
-constexpr auto kReceipt = std::chrono::milliseconds(500);
-constexpr double kClock_s = 3.0;
-constexpr std::size_t kMostClocks = 8;
-
-std::string clock_topic(const std::string& name) { return "bodeflow/clock/" + name; }
-
-/// Names of runs and hosts go into topics and folder names.
-bool is_plain(const std::string& name) { return name.size() <= 64 && graph::is_name(name); }
-
-double load_now() {
-  double load = 0.0;
-  return getloadavg(&load, 1) == 1 ? load : 0.0;
-}
-
-class Agent {
- public:
-  Agent(const AgentTask& task, const std::atomic<bool>& stop) : task_(task), stop_(stop) {}
-
-  tl::expected<bool, std::string> serve() {
-    auto participant = transport::join(task_.settings);
-    if (!participant) return tl::unexpected(participant.error());
-    participant_ = *participant;
-    auto mailbox = transport::open_mailbox(*participant, mailbox_of(task_.info.name));
-    if (!mailbox) return tl::unexpected(mailbox.error().text);
-    auto board = transport::open_board(*participant, kBoard, true);
-    if (!board) return tl::unexpected(board.error().text);
-    if (is_taken(**board)) return tl::unexpected(fmt::format("the lab has an agent called '{}' already", task_.info.name));
-    task_.tell(fmt::format("agent '{}' is there: {} plugins, runs below '{}'", task_.info.name, task_.info.plugins.size(),
-                           task_.directory.string()));
-    while (!stop_ && !renewed_ && !(task_.once && served_ > 0 && children_.empty())) {
-      if (auto said = say_hello(**board); !said) return tl::unexpected(said.error());
-      if (const auto text = (*mailbox)->receive(0.2)) take(*text);
-      reap();
-    }
-    end_children();
-    return renewed_;
-  }
-
- private:
-  /// Whether another agent of this name shows itself while we look around.
-  bool is_taken(transport::Board& board) const {
-    for (int i = 0; i < kLooks && !stop_; ++i) {
-      for (const std::string& text : board.texts())
-        if (const auto agent = agent_from(text); agent && agent->name == task_.info.name) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    return false;
-  }
-
-  tl::expected<void, std::string> say_hello(transport::Board& board) {
-    AgentInfo info = task_.info;
-    info.load = std::round(load_now() * 10.0) / 10.0;
-    for (const auto& [pid, run] : children_) info.runs.push_back(run);
-    std::string text = to_json(info).dump();
-    if (text == said_) return {};
-    auto said = board.say(text);
-    if (!said) return tl::unexpected(said.error().text);
-    said_ = std::move(text);
-    return {};
-  }
-
-  void take(const std::string& text) {
-    const json wish = json::parse(text, nullptr, false);
-    const auto said = [&](const char* key) {
-      return wish.is_object() && wish.contains(key) && wish[key].is_string() ? wish[key].get<std::string>() : std::string();
-    };
-    if (const std::string clock = said("clock"); is_plain(clock)) return tell_time(clock);
-    if (const std::string list = said("revoked"); !list.empty()) return renew(list);
-    if (const std::string run = said("start"); is_plain(run)) return begin(run);
-    task_.tell("a message that is no request was dropped");
-  }
-
-  void renew(const std::string& revocations) {
-    renewed_ = task_.take_revocations && task_.take_revocations(revocations);
-    if (renewed_) std::this_thread::sleep_for(kReceipt);  // the sender still waits for our receipt
-  }
-
-  void begin(const std::string& run) {
-    const fs::path directory = task_.directory / run;
-    std::error_code error;
-    fs::create_directories(task_.directory, error);
-    if (error) return task_.tell(fmt::format("run '{}': can't create '{}': {}", run, task_.directory.string(), error.message()));
-    const auto pid = start_part(task_.command, part_options(run, task_.info.name, directory, task_.settings));
-    if (!pid) return task_.tell(fmt::format("run '{}': {}", run, pid.error()));
-    children_[*pid] = run;
-    ++served_;
-    task_.tell(fmt::format("run '{}' begins", run));
-  }
-
-  void tell_time(const std::string& name) {
-    std::erase_if(
-        clocks_, [](std::future<void>& answer) { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
-    if (clocks_.size() < kMostClocks)
-      clocks_.push_back(std::async(std::launch::async, answer_clock, participant_, clock_topic(name), kClock_s));
-  }
-
-  void reap() {
-    int status = 0;
-    for (pid_t pid = 0; (pid = waitpid(-1, &status, WNOHANG)) > 0;) {
-      const auto child = children_.find(pid);
-      if (child == children_.end()) continue;
-      task_.tell(WIFSIGNALED(status) ? fmt::format("run '{}': ended by signal {}", child->second, WTERMSIG(status))
-                                     : fmt::format("run '{}' ends with exit code {}", child->second, WEXITSTATUS(status)));
-      children_.erase(child);
-    }
-  }
-
-  void end_children() {
-    for (const auto& [pid, run] : children_) kill(pid, SIGTERM);
-    for (int i = 0; i < 50 && !children_.empty(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      reap();
-    }
-    for (const auto& [pid, run] : children_) kill(pid, SIGKILL);
-  }
-
-  const AgentTask& task_;
-  const std::atomic<bool>& stop_;
-  std::map<pid_t, std::string> children_;
-  std::shared_ptr<transport::Participant> participant_;
-  std::vector<std::future<void>> clocks_;
-  std::string said_;
-  int served_ = 0;
-  bool renewed_ = false;  ///< the list of revoked certificates
-};
-
-}  // namespace
 
 json to_json(const AgentInfo& agent) {
   json plugins = json::array();
   for (const auto& plugin : agent.plugins)
     plugins.push_back({{"name", plugin.name}, {"version", plugin.version}, {"sha256", plugin.sha256}});
+  json ended = json::array();
+  for (const auto& [run, how] : agent.ended) ended.push_back({run, how});
   return {{"agent", agent.name},
           {"version", agent.version},
           {"system", agent.system},
@@ -165,6 +29,7 @@ json to_json(const AgentInfo& agent) {
           {"processors", agent.processors},
           {"load", agent.load},
           {"runs", agent.runs},
+          {"ended", ended},
           {"plugins", plugins}};
 }
 
@@ -179,6 +44,8 @@ std::optional<AgentInfo> agent_from(const std::string& text) {
     agent.processors = item.at("processors").get<int>();
     agent.load = item.at("load").get<double>();
     agent.runs = item.at("runs").get<std::vector<std::string>>();
+    for (const json& one : item.value("ended", json::array()))
+      agent.ended.emplace_back(one.at(0).get<std::string>(), one.at(1).get<std::string>());
     for (const json& plugin : item.at("plugins"))
       agent.plugins.push_back({plugin.at("name").get<std::string>(), plugin.at("version").get<std::string>(),
                                plugin.at("sha256").get<std::string>()});
@@ -189,7 +56,7 @@ std::optional<AgentInfo> agent_from(const std::string& text) {
 }
 
 tl::expected<std::unique_ptr<Lab>, std::string> Lab::watch(const std::shared_ptr<transport::Participant>& participant) {
-  auto board = transport::open_board(participant, kBoard, false);
+  auto board = transport::open_board(participant, kAgentsBoard, false);
   if (!board) return tl::unexpected(board.error().text);
   auto lab = std::make_unique<Lab>();
   lab->board_ = std::move(*board);
@@ -235,10 +102,6 @@ tl::expected<std::vector<AgentInfo>, std::string> Lab::wait_for(const std::vecto
 std::string new_name() {
   std::random_device random;
   return fmt::format("{:08x}{:08x}", random(), random());
-}
-
-tl::expected<bool, std::string> serve_agent(const AgentTask& task, const std::atomic<bool>& stop) {
-  return Agent(task, stop).serve();
 }
 
 tl::expected<std::vector<std::string>, std::string> tell_revocations(const std::shared_ptr<transport::Participant>& participant,

@@ -17,7 +17,8 @@ struct AgentInfo {
   std::uint32_t vector_level = 1;
   int processors = 1;
   double load = 0.0;
-  std::vector<std::string> runs;  ///< parts that it runs now
+  std::vector<std::string> runs;                           ///< parts that it runs now
+  std::vector<std::pair<std::string, std::string>> ended;  ///< parts that have ended lately, and how
   struct Plugin {
     std::string name, version, sha256;
   };

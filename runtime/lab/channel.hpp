@@ -38,7 +38,7 @@ class Channel {
 
 /// Processes for one host's part of a run, at most: the first and those that go on for a lost one.
 inline constexpr int kMostParts = 4;
-/// The name of a part's process: that of the run, and how often a lost one was started again.
+/// The name of a part's process: that of the run, and its epoch: how often parts of the run had been started again then.
 std::string part_name(const std::string& run, int epoch);
 
 /// The links of a run between its parts: a name for all of them, and how often a part was started again before.

@@ -35,6 +35,7 @@ Done HostPart::hear(double seconds) {
   if (!heard) return tl::unexpected(fmt::format("{}: {}", title(), heard.error()));
   if (*heard) {
     heard_ = Clock::now();
+    was_heard_ = true;
     return take(std::move(**heard));
   }
   if (silent_s() > lost_s_)
@@ -49,7 +50,7 @@ Done HostPart::take(Channel::Heard heard) {
     if (said["answer"] == "close") {
       close_error_ = said.value("error", "");
       begin_files(said.value("files", json::array()));
-    } else {
+    } else if (said.value("number", std::int64_t{0}) == wishes_) {
       answer_ = said;
     }
     return {};
@@ -114,7 +115,11 @@ std::vector<std::string> HostPart::files() const {
   return names;
 }
 
-Done HostPart::say(const json& message) {
+Done HostPart::say(json message) {
+  if (message["do"] != "beat") {
+    message["number"] = ++wishes_;
+    answer_.reset();
+  }
   const auto until = Clock::now() + std::chrono::duration<double>(kTake_s);
   auto said = channel_->say(message, [&] { return Clock::now() < until; });
   if (!said) return tl::unexpected(fmt::format("{}: {}", title(), said.error()));

@@ -22,7 +22,8 @@ class HostPart {
 
   /// Hears for at most `seconds`. Error: the host is lost, with the reason.
   tl::expected<void, std::string> hear(double seconds);
-  tl::expected<void, std::string> say(const nlohmann::json& message);
+  /// Each wish is numbered: an answer to an earlier one is dropped.
+  tl::expected<void, std::string> say(nlohmann::json message);
   tl::expected<void, std::string> send(std::span<const std::byte> bytes);
   /// The answer to what was asked last, once it is there.
   std::optional<nlohmann::json> take_answer();
@@ -36,9 +37,12 @@ class HostPart {
   const std::vector<SharedRecord>& records() const { return records_; }
   /// Before a phase runs.
   void forget_end();
-  /// Seconds since it said something.
+  /// It has said something.
+  bool was_heard() const { return was_heard_; }
+  /// Seconds since it said something, or since it is waited for.
   double silent_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - heard_).count(); }
-  /// Samples that are missing on its connections, told since the last call: {"connection", "first", "count", "epoch"}.
+  /// Samples that are missing on its connections, told since the last call: {"connection", "first", "count", "from_s",
+  /// "to_s", "epoch"}.
   std::vector<nlohmann::json> take_gaps() { return std::exchange(gaps_, {}); }
 
   /// Files that come are written below this folder, which is made.
@@ -64,6 +68,8 @@ class HostPart {
   double lost_s_;
   Log log_;
   std::chrono::steady_clock::time_point heard_;
+  bool was_heard_ = false;
+  std::int64_t wishes_ = 0;
   std::optional<nlohmann::json> answer_;
   nlohmann::json state_, ended_;
   std::vector<SharedRecord> records_;

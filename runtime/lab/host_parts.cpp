@@ -17,7 +17,10 @@ using Done = tl::expected<void, std::string>;
 
 constexpr double kWaitForAgents_s = 5.0, kWaitForParts_s = 15.0;
 constexpr double kBeat_s = 0.5;
-/// A part says something five times a second.
+/// A part says something five times a second: one that has gone has been silent for so long, with all heard that it had said.
+constexpr double kSilent_s = 0.4;
+/// An agent that came in the place of a killed one does not know the parts of that one: those that are silent for so long are
+/// gone.
 constexpr double kVanished_s = 1.0;
 
 tl::unexpected<Ended> failed(std::string reason) {
@@ -58,7 +61,10 @@ Done HostParts::begin() {
   for (const std::string& host : hosts)
     if (auto started = start(host); !started) return started;
   for (auto& part : parts_)
-    if (auto connected = connect(*part); !connected) return connected;
+    if (auto connected = connect(*part); !connected) {
+      lose(*part);
+      return connected;
+    }
   for (auto& part : parts_)
     if (auto greeted = greet(*part); !greeted) return tl::unexpected(greeted.error().reason);
   directory_.event("hosts", {{"run", run_}, {"hosts", hosts}});
@@ -109,44 +115,74 @@ Done HostParts::start(const std::string& host) {
   return own_.start(options_.part_command, part_options(run_, "", directory_.path() / "own_part", options_.settings));
 }
 
-bool HostParts::has_vanished(const HostPart& part) const {
-  if (part.name().empty() || part.silent_s() < kVanished_s) return false;
+std::optional<std::string> HostParts::why_gone(const HostPart& part) {
+  if (part.silent_s() < kSilent_s) return std::nullopt;
+  const auto process = [&](const std::string& how) { return fmt::format("{} is lost: its process {}", part.title(), how); };
+  if (part.name().empty()) return own_.runs() ? std::nullopt : std::optional(process(own_.end_text()));
   const std::string run = part_name(run_, epoch(part.name()));
-  const std::vector<AgentInfo> agents = lab_->agents();
-  // One that was killed may still be shown beside the one that came in its place.
-  return std::any_of(agents.begin(), agents.end(), [&](const AgentInfo& agent) {
-    return agent.name == part.name() && std::find(agent.runs.begin(), agent.runs.end(), run) == agent.runs.end();
-  });
+  bool forgotten = false;
+  // An agent that was killed may still be shown beside the one that came in its place.
+  for (const AgentInfo& agent : lab_->agents()) {
+    if (agent.name != part.name()) continue;
+    for (const auto& [ended, how] : agent.ended)
+      if (ended == run) return process(how);
+    forgotten = forgotten || std::find(agent.runs.begin(), agent.runs.end(), run) == agent.runs.end();
+  }
+  if (forgotten && part.was_heard() && part.silent_s() > kVanished_s) return process("has gone with its agent, which came back");
+  return std::nullopt;
 }
 
-tl::expected<HostPart*, Ended> HostParts::start_again(HostPart& lost) {
+std::optional<std::pair<HostPart*, std::string>> HostParts::find_gone() {
+  for (auto& part : parts_)
+    if (!is_gone(*part) && !part->has_ended())
+      if (auto why = why_gone(*part)) return std::pair(part.get(), std::move(*why));
+  return std::nullopt;
+}
+
+tl::expected<void, Ended> HostParts::start_again(const std::set<std::string>& hosts) {
+  ++epoch_;
+  for (const std::string& host : hosts)
+    if (auto replaced = replace(on(host)); !replaced) return failed(replaced.error());
+  for (const std::string& host : hosts) {
+    HostPart& part = on(host);
+    auto connected = connect(part);
+    gone_.erase(&part);
+    if (!connected) return failed(connected.error());
+    if (auto greeted = greet(part); !greeted) return greeted;
+  }
+  return {};
+}
+
+/// Asks for another process in place of a part's.
+Done HostParts::replace(HostPart& lost) {
   const std::string host = lost.name();
-  const int epoch = ++epochs_[host];
-  auto part = open(host);
-  if (!part) return failed(part.error());
-  auto& place = *std::find_if(parts_.begin(), parts_.end(), [&](const auto& p) { return p.get() == &lost; });
+  if (!is_gone(lost)) (void)lost.say({{"do", "bye"}});
   lose(lost);
+  epochs_[host] = epoch_;
+  auto part = open(host);
+  if (!part) return tl::unexpected(part.error());
+  auto& place = *std::find_if(parts_.begin(), parts_.end(), [&](const auto& p) { return p.get() == &lost; });
   lost_.push_back(std::exchange(place, std::move(*part)));
+  lose(*place);  // it can't be told anything before it has come
   // What was recorded in pieces is not joined with what the other hosts have: it lies beside.
   place->collect_into(directory_.path() / "restarted" / host);
   // No receipt comes as long as the network believes in the reader of an agent that was killed; that the part comes tells enough.
-  requests_.push_back(std::async(std::launch::async, [participant = participant_, host, name = part_name(run_, epoch)] {
+  requests_.push_back(std::async(std::launch::async, [participant = participant_, host, name = part_name(run_, epoch_)] {
     (void)ask_for_part(participant, host, name, kWaitForAgents_s);
   }));
-  gone_.insert(place.get());  // it can't be told anything before it has come
-  if (auto connected = connect(*place); !connected) return failed(connected.error());
-  gone_.erase(place.get());
-  if (auto greeted = greet(*place); !greeted) return tl::unexpected(greeted.error());
-  return place.get();
+  return {};
 }
 
 Done HostParts::connect(HostPart& part) {
   const auto until = Clock::now() + std::chrono::duration<double>(kWaitForParts_s);
+  std::optional<std::string> gone;
   const auto goes_on = [&] {
     if (epoch(part.name()) > 0) (void)beat();  // the others run
-    return !stopped() && Clock::now() < until && (!part.name().empty() || own_.runs());
+    if (!gone) gone = why_gone(part);
+    return !stopped() && Clock::now() < until && !gone;
   };
   auto connected = part.channel().connect(goes_on);
+  if (gone && !connected) return tl::unexpected(*gone);
   if (!connected) return tl::unexpected(fmt::format("{} did not start its part: {}", part.title(), connected.error()));
   return {};
 }
@@ -201,10 +237,15 @@ tl::expected<json, Ended> HostParts::wait_for_answer(HostPart& part) {
   while (true) {
     if (stopped()) return tl::unexpected(Ended{RunResult::Status::interrupted, "", "interrupted", {}});
     Done fine = part.hear(0.02);
+    for (auto& other : parts_)
+      if (fine && other.get() != &part && !is_gone(*other)) fine = other->hear(0.0);
     if (fine) fine = beat();
     if (!fine) return failed(fine.error());
     auto answer = part.take_answer();
-    if (!answer) continue;
+    if (!answer) {
+      if (const auto gone = find_gone()) return failed(gone->second);
+      continue;
+    }
     if (answer->contains("problems")) {
       Problems problems = problems_from((*answer)["problems"]);
       return tl::unexpected(Ended{RunResult::Status::rejected, "", to_string(problems), problems});
@@ -238,6 +279,7 @@ Done HostParts::collect(HostPart& part, const RunResult& result) {
     return said;
   while (!part.collected()) {
     if (auto heard = part.hear(0.1); !heard) return heard;
+    if (const auto gone = why_gone(part)) return tl::unexpected(*gone);
     if (auto beaten = beat(); !beaten) return beaten;
   }
   if (!part.close_error().empty()) return tl::unexpected(fmt::format("{}: {}", part.title(), part.close_error()));

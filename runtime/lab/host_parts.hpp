@@ -37,17 +37,20 @@ class HostParts {
   bool is_gone(const HostPart& part) const { return gone_.count(&part) > 0; }
   void lose(const HostPart& part) { gone_.insert(&part); }
 
-  /// Whether the part's process has gone although its host's agent is there.
-  bool has_vanished(const HostPart& part) const;
-  /// Starts another process in place of a lost part's, and gives it the graph: that part. Error: it can't be had.
-  tl::expected<HostPart*, Ended> start_again(HostPart& lost);
-  /// How often the part of a host was started again.
+  /// Why the part's process has gone, as its host's agent tells; nothing: it has not, or nobody knows.
+  std::optional<std::string> why_gone(const HostPart& part);
+  /// The first part, neither lost nor at the end of its phase, whose process has gone, and why.
+  std::optional<std::pair<HostPart*, std::string>> find_gone();
+
+  /// Starts other processes in place of the parts of these hosts, and gives them the graph. Error: one can't be had.
+  tl::expected<void, Ended> start_again(const std::set<std::string>& hosts);
+  /// Of the part that a host has now: how often parts of the run had been started again before it was.
   int epoch(const std::string& host) const {
     const auto found = epochs_.find(host);
     return found == epochs_.end() ? 0 : found->second;
   }
 
-  /// The answer of a host. Error: it is lost, or what it refuses.
+  /// The answer of a host. Error: it or another one is lost, or what it refuses.
   tl::expected<nlohmann::json, Ended> ask(HostPart& part, const nlohmann::json& question);
   /// The answer to what was said to it last.
   tl::expected<nlohmann::json, Ended> wait_for_answer(HostPart& part);
@@ -67,6 +70,7 @@ class HostParts {
   tl::expected<void, std::string> connect(HostPart& part);
   tl::expected<std::unique_ptr<HostPart>, std::string> open(const std::string& host);
   tl::expected<void, Ended> greet(HostPart& part);
+  tl::expected<void, std::string> replace(HostPart& part);
   tl::expected<void, std::string> collect(HostPart& part, const phases::RunResult& result);
 
   const graph::Graph& graph_;
@@ -80,6 +84,7 @@ class HostParts {
   OwnPart own_;
   std::vector<std::unique_ptr<HostPart>> parts_, lost_;
   std::map<std::string, int> epochs_;  ///< by host
+  int epoch_ = 0;                      ///< the last one of the run
   std::vector<std::future<void>> requests_;
   std::set<const HostPart*> gone_;
   std::chrono::steady_clock::time_point beaten_;

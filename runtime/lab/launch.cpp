@@ -125,20 +125,19 @@ class Launch {
     };
     while (true) {
       if (hosts_.stopped()) end_all({RunResult::Status::interrupted, "", "interrupted", {}});
+      if (const auto gone = hosts_.find_gone())
+        if (auto restarted = meet_loss(*gone->first, gone->second, running, !why.has_value()); !restarted)
+          end_all(hosts_.stopped() ? Ended{RunResult::Status::interrupted, "", "interrupted", {}} : restarted.error());
       bool any = false;
       for (auto& part : hosts_.all()) {
-        if (!runs(*part)) continue;
-        if (!why && running.phase.run.restart && hosts_.has_vanished(*part))
-          if (auto restarted = start_again(*part, running); !restarted)
-            end_all(hosts_.stopped() ? Ended{RunResult::Status::interrupted, "", "interrupted", {}} : restarted.error());
-        if (!runs(*part)) continue;
-        if (auto heard = part->hear(0.02); !heard) {
+        if (hosts_.is_gone(*part)) continue;
+        if (auto heard = part->hear(part->has_ended() ? 0.0 : 0.02); !heard) {
           hosts_.lose(*part);
           end_all({RunResult::Status::failed, "", heard.error(), {}});
         } else if (part->has_ended() && !part->ended().value("complete", false)) {
           end_all(end_of(running.phase, *part));
         }
-        note_gaps(*part);
+        note_gaps(*part, running.phase);
         any = any || runs(*part);
       }
       if (!any) break;
@@ -146,36 +145,51 @@ class Launch {
       if (why && std::chrono::duration<double>(Clock::now() - stopping).count() > kWaitForStop_s) break;
       show(running.phase);
     }
-    for (auto& part : hosts_.all()) note_gaps(*part);
+    for (auto& part : hosts_.all()) note_gaps(*part, running.phase);
     if (why) return tl::unexpected(*why);
     return {};
   }
 
-  tl::expected<void, Ended> start_again(HostPart& lost, const RunningPhase& running) {
-    const std::string host = lost.name();
-    note_gaps(lost);
-    if (hosts_.epoch(host) + 1 == kMostParts) {
+  /// A part has gone: others take its place, or the run ends.
+  tl::expected<void, Ended> meet_loss(HostPart& lost, const std::string& why, const RunningPhase& running, bool may_restart) {
+    if (!running.phase.run.restart || !may_restart) {
       hosts_.lose(lost);
-      return tl::unexpected(
-          Ended{RunResult::Status::failed,
-                "",
-                fmt::format("host '{}' is lost for the {}th time in this run: it is not started again", host, kMostParts),
-                {}});
+      return tl::unexpected(Ended{RunResult::Status::failed, "", why, {}});
     }
-    warn(host, "its part has gone; it is started again");
-    directory_.event("host lost", {{"phase", running.phase.name}, {"host", host}, {"time_s", lost.state().value("time_s", 0.0)}});
-    const auto begin_s = restart(hosts_, lost, running);
+    Restart restart(hosts_, running, [&](HostPart& part, const std::string& text) { return note_loss(part, text, running); });
+    const auto begin_s = restart.run(lost, why);
     if (!begin_s) return tl::unexpected(begin_s.error());
-    directory_.note_restart(
-        {{"phase", running.phase.name}, {"host", host}, {"epoch", hosts_.epoch(host)}, {"begin_s", *begin_s}});
-    warn(host, fmt::format("goes on at {:.6g} s, with blocks that have forgotten what was before; what it records is not joined "
-                           "with the rest, it lies in restarted/{}",
-                           *begin_s, host));
+    for (const std::string& host : restart.restarted()) {
+      directory_.note_restart(
+          {{"phase", running.phase.name}, {"host", host}, {"epoch", hosts_.epoch(host)}, {"begin_s", *begin_s}});
+      warn(host,
+           fmt::format("goes on at {:.6g} s, with blocks that have forgotten what was before; what it records is not joined "
+                       "with the rest, it lies in restarted/{}",
+                       *begin_s, host));
+    }
     return {};
   }
 
-  void note_gaps(HostPart& part) {
+  tl::expected<void, Ended> note_loss(HostPart& part, const std::string& why, const RunningPhase& running) {
+    note_gaps(part, running.phase);
+    if (part.name().empty()) return tl::unexpected(Ended{RunResult::Status::failed, "", why, {}});
+    if (++losses_[part.name()] == kMostParts)
+      return tl::unexpected(
+          Ended{RunResult::Status::failed,
+                "",
+                fmt::format("host '{}' is lost for the {}th time in this run: it is not started again", part.name(), kMostParts),
+                {}});
+    warn(part.name(), why + "; it is started again");
+    directory_.event("host lost", {{"phase", running.phase.name},
+                                   {"host", part.name()},
+                                   {"why", why},
+                                   {"time_s", part.state().is_object() ? part.state().value("time_s", 0.0) : 0.0}});
+    return {};
+  }
+
+  void note_gaps(HostPart& part, const graph::Phase& phase) {
     for (json& gap : part.take_gaps()) {
+      gap["phase"] = phase.name;
       gap["host"] = part.name();
       directory_.note_gap(gap);
       warn(gap.value("connection", ""),
@@ -219,6 +233,7 @@ class Launch {
       const json& state = part->state();
       if (state.is_object())
         hosts.push_back({{"host", part->name()},
+                         {"silent_s", part->silent_s()},
                          {"time_s", state.value("time_s", 0.0)},
                          {"rate", state.value("rate", 0.0)},
                          {"pacing", state.value("pacing", json())},
@@ -258,7 +273,8 @@ class Launch {
   record::RunDirectory& directory_;
   const LaunchOptions& options_;
   HostParts hosts_;
-  plan::Facts facts_;  ///< of the phase that runs
+  plan::Facts facts_;                  ///< of the phase that runs
+  std::map<std::string, int> losses_;  ///< of hosts, in the whole run
   std::set<std::string> stalled_;
   std::unique_ptr<transport::Board> board_;
   Clock::time_point shown_;

@@ -38,15 +38,16 @@ class LinkSlot {
     if ((pauses_ % 2 == 1) != yes) ++pauses_;
   }
 
-  /// [another thread] Takes the link out, once it is not in use; `look(link)` sees it before. It lives on, unused, as long as
-  /// this does: others may look at its state.
+  /// [another thread] Takes the link out, once it is not in use; `look(link)` sees it before, or null where it is out already. It
+  /// lives on, unused, as long as this does: others may look at its state.
   template <class Look>
   auto take_out(Look look) {
     leaving_ = true;
     const std::lock_guard lock(mutex_);
     leaving_ = false;
+    if (!link_) return look(static_cast<Link*>(nullptr));
     used_.push_back(std::move(link_));
-    return look(*used_.back());
+    return look(used_.back().get());
   }
 
   /// [another thread] `look(link)` sees the new link before the block does.

@@ -15,7 +15,11 @@ tl::expected<void, std::string> OwnPart::start(const std::vector<std::string>& c
 }
 
 bool OwnPart::runs() {
-  if (pid_ > 0 && waitpid(pid_, nullptr, WNOHANG) == pid_) pid_ = 0;
+  int status = 0;
+  if (pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
+    pid_ = 0;
+    end_text_ = how_it_ended(status);
+  }
   return pid_ > 0;
 }
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstring>
@@ -24,6 +25,11 @@ tl::expected<pid_t, std::string> start_part(std::vector<std::string> command, co
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) return tl::unexpected(fmt::format("can't start {}: {}", arguments[0], std::strerror(failed)));
   return pid;
+}
+
+std::string how_it_ended(int status) {
+  if (WIFSIGNALED(status)) return fmt::format("was ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  return fmt::format("ended with exit code {}", WEXITSTATUS(status));
 }
 
 }  // namespace bodeflow::lab

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <deque>
-#include <fstream>
 #include <mutex>
 #include <thread>
 
@@ -12,6 +11,7 @@
 #include "lab/channel.hpp"
 #include "lab/facts_json.hpp"
 #include "lab/look.hpp"
+#include "lab/part_files.hpp"
 #include "lab/part_run.hpp"
 #include "phases/run.hpp"
 #include "record/pacing.hpp"
@@ -28,7 +28,6 @@ constexpr double kPoll_s = 0.05;
 constexpr double kBeat_s = 0.2;
 /// A launcher that says nothing for so long is lost, until it has told the graph's tolerance.
 constexpr double kLost_s = 10.0;
-constexpr std::size_t kPiece = std::size_t{4} << 20;
 
 json problems_answer(const Problems& problems) { return {{"problems", to_json(problems)}}; }
 
@@ -72,9 +71,7 @@ class PartServer {
       if (auto told = tell(); !told) return lost(told.error());
       if (since_heard() > lost_s_) return lost(fmt::format("nothing was heard of the launcher for {} s", lost_s_));
     }
-    std::error_code error;
-    for (const auto& [name, folder] : folders())
-      if (fetched_) std::filesystem::remove_all(folder, error);
+    if (fetched_) remove_folders(task_.directory);
     channel_->drain(2.0);
     return {};
   }
@@ -109,6 +106,7 @@ class PartServer {
     }
     if (answer.is_null()) return {};
     answer["answer"] = wish;
+    answer["number"] = number_of(heard.said);
     return say(answer);
   }
 
@@ -159,9 +157,15 @@ class PartServer {
     if (!made) return problems_answer(made.error());
     part_ = std::move(*made);
     part_->on_gap([this](const std::string& connection, const Gap& gap) {
+      const auto time_s = [&](std::uint64_t sample) { return static_cast<double>(sample) / gap.rate.hz(); };
       const std::lock_guard lock(mutex_);
-      news_.push_back(
-          {{"event", "gap"}, {"connection", connection}, {"first", gap.first}, {"count", gap.count}, {"epoch", gap.epoch}});
+      news_.push_back({{"event", "gap"},
+                       {"connection", connection},
+                       {"first", gap.first},
+                       {"count", gap.count},
+                       {"from_s", time_s(gap.first)},
+                       {"to_s", time_s(gap.first + gap.count)},
+                       {"epoch", gap.epoch}});
     });
     return {{"ok", true}};
   }
@@ -181,19 +185,21 @@ class PartServer {
   json connect(const json& said) {
     join_work();
     stop_phase_ = false;
-    work_ = in_background("connect", [this, links = links_of(said)] {
+    work_ = in_background(said, [this, links = links_of(said)] {
       return part_->connect(participant_, links, repeat_, [this] { return !stop_ && !stop_phase_; });
     });
     return nullptr;
   }
 
+  static std::int64_t number_of(const json& said) { return said.value("number", std::int64_t{0}); }
+
   /// The launcher is answered when it is done.
   template <class Work>
-  std::thread in_background(const char* wish, Work work) {
-    return std::thread([this, wish, work = std::move(work)] {
+  std::thread in_background(const json& said, Work work) {
+    return std::thread([this, wish = said.at("do"), number = number_of(said), work = std::move(work)] {
       const auto done = work();
-      json answer = {{"answer", wish}, {"ok", true}};
-      if (!done) answer = {{"answer", wish}, {"error", done.error()}};
+      json answer = {{"answer", wish}, {"number", number}, {"ok", true}};
+      if (!done) answer = {{"answer", wish}, {"number", number}, {"error", done.error()}};
       const std::lock_guard lock(mutex_);
       news_.push_back(std::move(answer));
     });
@@ -214,6 +220,7 @@ class PartServer {
 
   json leave(const json& said) {
     const auto host = said.at("host").get<std::string>();
+    end_rejoining();
     if (!running_ && part_->is_linked_to(host)) return {{"error", "its phase has ended there"}};
     const auto period = part_->leave(host);
     if (!period) return {{"error", period.error()}};
@@ -221,11 +228,18 @@ class PartServer {
   }
 
   json rejoin(const json& said) {
-    if (rejoining_.joinable()) rejoining_.join();
-    rejoining_ = in_background("rejoin", [this, host = said.at("host").get<std::string>(), links = links_of(said)] {
-      return part_->rejoin(host, participant_, links, repeat_, [this] { return !stop_ && !stop_phase_; });
+    end_rejoining();
+    rejoining_ = in_background(said, [this, host = said.at("host").get<std::string>(), links = links_of(said)] {
+      return part_->rejoin(host, participant_, links, repeat_, [this] { return !stop_ && !stop_phase_ && !rejoins_no_more_; });
     });
     return nullptr;
+  }
+
+  /// Waits no longer for a part that may have been lost itself.
+  void end_rejoining() {
+    rejoins_no_more_ = true;
+    if (rejoining_.joinable()) rejoining_.join();
+    rejoins_no_more_ = false;
   }
 
   json go_on(const json& said) {
@@ -345,42 +359,19 @@ class PartServer {
     if (!directory_) return {{"files", json::array()}};
     part_.reset();
     const auto closed = directory_->close(said.at("status").get<std::string>(), said.at("reason").get<std::string>());
-    json files = json::array();
-    std::vector<std::filesystem::path> paths;
-    for (const auto& [name, folder] : folders())
-      for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-        if (entry.is_regular_file()) {
-          files.push_back({(name / std::filesystem::relative(entry.path(), folder)).string(), entry.file_size()});
-          paths.push_back(entry.path());
-        }
-    json answer = {{"answer", "close"}, {"files", files}};
+    const std::vector<PartFile> files = files_of(task_.directory);
+    json list = json::array();
+    for (const PartFile& file : files) list.push_back({file.name, file.size});
+    json answer = {{"answer", "close"}, {"files", list}};
     if (!closed) answer["error"] = closed.error();
     if (!say(answer)) return nullptr;
-    for (std::size_t i = 0; i < paths.size(); ++i) send_file(paths[i], files[i].at(1).get<std::uint64_t>());
-    return nullptr;
-  }
-
-  /// Where the part and those that it goes on for left what they recorded, and what they are called in the run directory.
-  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> folders() const {
-    std::vector<std::pair<std::filesystem::path, std::filesystem::path>> found{{"", task_.directory}};
-    const auto dash = task_.run.rfind('-');
-    if (dash == std::string::npos) return found;
-    const std::string first = task_.run.substr(0, dash);
-    for (int epoch = 0; part_name(first, epoch) != task_.run && epoch < kMostParts; ++epoch)
-      if (const auto folder = task_.directory.parent_path() / part_name(first, epoch); std::filesystem::is_directory(folder))
-        found.emplace_back(fmt::format("epoch_{}", epoch), folder);
-    return found;
-  }
-
-  void send_file(const std::filesystem::path& file, std::uint64_t size) {
-    std::ifstream in(file, std::ios::binary);
-    std::vector<char> piece(std::min<std::uint64_t>(size, kPiece));
-    for (std::uint64_t done = 0; done < size; done += piece.size()) {
-      piece.resize(std::min<std::uint64_t>(size - done, kPiece));
-      in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto send = [this](std::span<const std::byte> piece) {
       heard_ = Clock::now();
-      if (!channel_->send(std::as_bytes(std::span(piece)), [this] { return here(); })) return;
-    }
+      return channel_->send(piece, [this] { return here(); }).has_value();
+    };
+    for (const PartFile& file : files)
+      if (!read_in_pieces(file, send)) break;
+    return nullptr;
   }
 
   /// What a part does that nobody leads any more: it ends its phase, or lets it end, and keeps what there is.
@@ -419,7 +410,7 @@ class PartServer {
   int repeat_ = 0;
   bool complete_ = false;  ///< the phase
   std::vector<SharedRecord> initial_;
-  std::atomic<bool> stop_phase_{false};
+  std::atomic<bool> stop_phase_{false}, rejoins_no_more_{false};
   std::thread work_, rejoining_;
   double begin_s_ = 0.0;  ///< in the phase: later than its begin for a part that goes on for a lost one
   std::unique_ptr<PartPhase> part_;

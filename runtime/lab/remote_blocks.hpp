@@ -19,6 +19,7 @@ const BlockDescription& record_inlet();   ///< one message output, fires once a 
 struct Gap {
   std::uint64_t first = 0, count = 0;  ///< samples of the stream
   std::uint32_t epoch = 0;             ///< of the part that goes on behind
+  Rate rate;                           ///< of the stream
 };
 
 /// A new link in place of a lost one: of the kind that the end had.
@@ -36,8 +37,8 @@ class StreamEnd {
   virtual void begin_at(std::uint64_t sample) = 0;
   /// Called in the block's thread when a gap is known.
   virtual void on_gap(std::function<void(const Gap&)>) {}
-  /// Lets go of the link to a lost host; the block waits for the next one. The sample from which on the stream may go on. Error:
-  /// it can't.
+  /// Lets go of the link to a lost host, if it has not yet; the block waits for the next one. The sample from which on the stream
+  /// may go on. Error: it can't.
   virtual tl::expected<std::uint64_t, std::string> leave() = 0;
   /// Goes on with another link, over which the stream goes on at `sample`.
   virtual tl::expected<void, transport::Failure> rejoin(NewLink link, std::uint64_t sample, const transport::GoOn& go_on) = 0;

@@ -42,7 +42,7 @@ class SampleOutlet final : public End, public StreamEnd {
   void begin_at(std::uint64_t sample) override { offset_ = next_ = sample; }
 
   tl::expected<std::uint64_t, std::string> leave() override {
-    return link_.take_out([&](transport::Outlet&) { return next_; });
+    return link_.take_out([&](transport::Outlet*) { return next_; });
   }
 
   void pause(bool yes) override { link_.pause(yes); }
@@ -135,9 +135,10 @@ class SampleInlet final : public End, public StreamEnd {
   void on_gap(std::function<void(const Gap&)> tell) override { tell_gap_ = std::move(tell); }
 
   tl::expected<std::uint64_t, std::string> leave() override {
-    return link_.take_out([&](transport::Inlet& inlet) -> tl::expected<std::uint64_t, std::string> {
-      for (auto message = inlet.poll(0.0); message && *message; message = inlet.poll(0.0))
-        here_.push_back({std::move(**message), {}});
+    return link_.take_out([&](transport::Inlet* inlet) -> tl::expected<std::uint64_t, std::string> {
+      if (inlet != nullptr)
+        for (auto message = inlet->poll(0.0); message && *message; message = inlet->poll(0.0))
+          here_.push_back({std::move(**message), {}});
       std::uint64_t next = offset_ + received_;
       bool ended = known_end_.has_value();
       for (const auto& [message, rejoined] : here_) {
@@ -255,7 +256,7 @@ class SampleInlet final : public End, public StreamEnd {
         for (std::size_t i = 0; i < sample.size(); i += sizeof none) std::memcpy(sample.data() + i, &none, sizeof none);
       for (std::uint64_t i = 0; i < count; ++i) channels_[c].insert(channels_[c].end(), sample.begin(), sample.end());
     }
-    const Gap gap{offset_ + received_, count, rejoined.epoch};
+    const Gap gap{offset_ + received_, count, rejoined.epoch, cut_.facts.rate};
     received_ = rejoined.sample;
     expected_ = static_cast<std::int64_t>(received_);
     if (count > 0 && tell_gap_) tell_gap_(gap);

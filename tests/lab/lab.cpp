@@ -7,6 +7,7 @@
 
 #include "catch.hpp"
 #include "processes_of.hpp"
+#include "record/data_file.hpp"
 
 namespace bodeflow::test {
 namespace {
@@ -105,6 +106,14 @@ nlohmann::json TestLab::manifest(const std::string& out) const {
 }
 
 nlohmann::json TestLab::hashes(const std::string& out) const { return manifest(out)["hashes"]; }
+
+std::vector<double> TestLab::stream(const std::string& file, const std::string& key) const {
+  const auto data = record::DataFile::open(path(file));
+  if (!data) FAIL(data.error());
+  const auto* stream = (*data)->stream(key);
+  REQUIRE(stream != nullptr);
+  return (*data)->read(*stream, 0, stream->length).value();
+}
 
 std::vector<nlohmann::json> TestLab::links(const std::string& out) const {
   std::vector<nlohmann::json> all;

@@ -54,6 +54,8 @@ class TestLab {
   nlohmann::json manifest(const std::string& out) const;
   /// Hashes of all streams and records that a run kept.
   nlohmann::json hashes(const std::string& out) const;
+  /// The samples of a recorded stream.
+  std::vector<double> stream(const std::string& file, const std::string& key) const;
   /// The links of all hosts as they were when their phases ended: "host" and what `top` shows of a link.
   std::vector<nlohmann::json> links(const std::string& out) const;
   /// Hashes of the graph in one process, not paced.

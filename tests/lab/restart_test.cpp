@@ -10,9 +10,7 @@
 #include "catch.hpp"
 #include "lab.hpp"
 #include "processes_of.hpp"
-#include "record/data_file.hpp"
 
-using bodeflow::record::DataFile;
 using namespace bodeflow::test;
 using nlohmann::json;
 
@@ -44,14 +42,6 @@ hosts: {bench: [source], middle: [twice]}
 
 const std::string kLoop = closed_loop("clock: realtime, duration: 8 s, seed: 1, restart: true, gaps: hold");
 
-std::vector<double> stream_of(TestLab& lab, const std::string& file, const std::string& key) {
-  const auto data = DataFile::open(lab.path(file));
-  if (!data) FAIL(data.error());
-  const auto* stream = (*data)->stream(key);
-  REQUIRE(stream != nullptr);
-  return (*data)->read(*stream, 0, stream->length).value();
-}
-
 /// Kills the process of a host's part, the first or one that goes on for a lost one, a second after its phase has begun.
 void kill_part(TestLab& lab, const std::string& host, int epoch = 0) {
   const std::string run = lab.begun(host, epoch);
@@ -72,7 +62,7 @@ void check_samples(TestLab& lab, Process& run) {
   CHECK(gap["epoch"] == 1);
   const auto first = gap["first"].get<std::size_t>(), count = gap["count"].get<std::size_t>();
   CHECK(count > 100);
-  const auto sent = stream_of(lab, "out/data.h5", "excitation.out"), back = stream_of(lab, "out/data.h5", "back.out");
+  const auto sent = lab.stream("out/data.h5", "excitation.out"), back = lab.stream("out/data.h5", "back.out");
   REQUIRE(sent.size() == 8000);
   REQUIRE(back.size() == 8000);
   std::size_t wrong = 0;
@@ -85,10 +75,10 @@ void check_samples(TestLab& lab, Process& run) {
   CHECK(run.output().find(std::to_string(count) + " samples are missing from sample " + std::to_string(first) + " on") !=
         std::string::npos);
   // What the bench recorded lies beside, in two pieces.
-  const auto later = stream_of(lab, "out/restarted/bench/data.h5", "twice.out");
+  const auto later = lab.stream("out/restarted/bench/data.h5", "twice.out");
   REQUIRE(later.size() == 8000 - first - count);
   CHECK(std::equal(later.begin(), later.end(), back.end() - static_cast<std::ptrdiff_t>(later.size())));
-  const auto earlier = stream_of(lab, "out/restarted/bench/epoch_0/data.h5", "twice.out");
+  const auto earlier = lab.stream("out/restarted/bench/epoch_0/data.h5", "twice.out");
   CHECK(
       std::equal(earlier.begin(), earlier.begin() + static_cast<std::ptrdiff_t>(std::min(first, earlier.size())), back.begin()));
 }
@@ -124,9 +114,9 @@ TEST_CASE("lab: a loop over hosts holds the last sample where its motor was lost
   REQUIRE(code == 0);
   const json gaps = lab.manifest("out")["gaps"];
   CHECK(gaps.size() == 2);  // of the controller and of this machine
-  const auto speed = stream_of(lab, "out/data.h5", "speed.out");
+  const auto speed = lab.stream("out/data.h5", "speed.out");
   REQUIRE(speed.size() == 800);
-  REQUIRE(stream_of(lab, "out/data.h5", "pi.out").size() == 800);
+  REQUIRE(lab.stream("out/data.h5", "pi.out").size() == 800);
   for (const json& gap : gaps) {
     if (gap["host"] != "") continue;
     const auto first = gap["first"].get<std::size_t>(), end = first + gap["count"].get<std::size_t>();
@@ -150,7 +140,7 @@ TEST_CASE("lab: a loop over hosts goes on where its controller was lost, which b
   CHECK(manifest["gaps"][0]["host"] == "bench");
   REQUIRE(manifest["restarts"].size() == 1);
   CHECK(manifest["restarts"][0]["host"] == "controller");
-  const auto speed = stream_of(lab, "out/data.h5", "speed.out");
+  const auto speed = lab.stream("out/data.h5", "speed.out");
   REQUIRE(speed.size() == 800);
   CHECK(std::none_of(speed.begin(), speed.end(), [](double value) { return std::isnan(value); }));
 }
@@ -164,7 +154,7 @@ TEST_CASE("lab: a source that is lost begins anew behind the gap, and the host b
   simulated.replace(simulated.find("realtime"), 8, "simulated");
   Process here(lab.run_here(lab.folder().write("here.yaml", simulated).string(), "here"));
   REQUIRE(here.wait() == 0);
-  const auto expected = stream_of(lab, "here/data.h5", "thrice.out");
+  const auto expected = lab.stream("here/data.h5", "thrice.out");
   for (const std::string& host : {std::string("bench"), std::string("middle")}) {
     Process run(lab.run(graph, host));
     kill_part(lab, host);
@@ -180,7 +170,7 @@ TEST_CASE("lab: a source that is lost begins anew behind the gap, and the host b
     const auto first = gap["first"].get<std::size_t>(), end = first + gap["count"].get<std::size_t>();
     REQUIRE(manifest["restarts"].size() == 1);
     CHECK(std::lround(1000.0 * manifest["restarts"][0]["begin_s"].get<double>()) == static_cast<long>(end));
-    const auto got = stream_of(lab, host + "/data.h5", "thrice.out");
+    const auto got = lab.stream(host + "/data.h5", "thrice.out");
     REQUIRE(got.size() == expected.size());
     std::size_t wrong = 0;
     for (std::size_t n = 0; n < got.size(); ++n) {
@@ -209,7 +199,7 @@ TEST_CASE("lab: a part that is lost again and again ends the run at the fourth t
   const json manifest = lab.manifest("out");
   CHECK(manifest["restarts"].size() == 3);
   REQUIRE(manifest["gaps"].size() == 3);
-  const auto sent = stream_of(lab, "out/data.h5", "excitation.out"), back = stream_of(lab, "out/data.h5", "back.out");
+  const auto sent = lab.stream("out/data.h5", "excitation.out"), back = lab.stream("out/data.h5", "back.out");
   REQUIRE(back.size() > 1000);
   std::size_t wrong = 0;
   for (std::size_t n = 0; n < back.size(); ++n) {

@@ -9,12 +9,12 @@ using namespace bodeflow::test;
 using nlohmann::json;
 
 TEST_CASE("lab: a host that computes slower than its source holds it back in bounded memory, and top tells so") {
-  // 128 MB go to a filter that takes a few seconds for them; the source alone would need a few tenths of a second.
-  constexpr double kSamples = 4e6;
+  // 96 MB go to a filter that takes a few seconds for them; the source alone would need a few tenths of a second.
+  constexpr double kSamples = 3e6;
   TestLab lab;
   lab.agent("bench");
   const std::string text = R"(bodeflow: 1
-run: {clock: simulated, duration: 400 s, seed: 1}
+run: {clock: simulated, duration: 300 s, seed: 1}
 blocks:
   source: {block: generators.noise, sample_rate: 10 kHz, channels: 4}
   slow: {block: filters.fir, taps: 8001, edges: [1 kHz]}
@@ -24,7 +24,7 @@ record: [part.out]
 hosts: {bench: [slow, part]}
 )";
   const json hashes = lab.hashes_here(text);
-  Process run(lab.run(lab.folder().write("slow.yaml", text).string(), "hosts"));
+  Process run(lab.run(lab.folder().write("slow.yaml", text).string(), "hosts"), 240);
   lab.begun("bench");
   const int receiver = lab.part_of("bench");
   const auto senders = processes_with({"part-worker", lab.path("hosts")});
@@ -38,7 +38,8 @@ hosts: {bench: [slow, part]}
     receiver_most = std::max(receiver_most, resident_mb(receiver));
   }
   lab.require_complete(run, "hosts", hashes);
-  INFO("sender " << sender_begin << " to " << sender_most << " MB, receiver " << receiver_begin << " to " << receiver_most << " MB");
+  INFO("sender " << sender_begin << " to " << sender_most << " MB, receiver " << receiver_begin << " to " << receiver_most
+                 << " MB");
   CHECK(sender_most - sender_begin < 40.0);
   CHECK(receiver_most - receiver_begin < 40.0);
 

@@ -70,8 +70,10 @@ class Screen {
     fmt::print("    {:<{}} {:>7} {:>9} {:>8} {:>8} {:>8} {:>4} {:>7} {:>8}\n", "connection", width, "msg/s", "kB/s", "queue kB",
                "p50 ms", "p99 ms", "gaps", "reconn.", "waited s");
     for (const json& host : run.value("hosts", json::array())) {
-      fmt::print("  {} at {:.2f} s, {:.3g} times real time\n", bold(host_name(host.value("host", json()))),
-                 host.value("time_s", 0.0), host.value("rate", 0.0));
+      const double silent = host.value("silent_s", 0.0);
+      fmt::print("  {} at {:.2f} s, {:.3g} times real time{}\n", bold(host_name(host.value("host", json()))),
+                 host.value("time_s", 0.0), host.value("rate", 0.0),
+                 silent > 0.7 ? fmt::format(", nothing heard of it for {:.1f} s", silent) : std::string());
       if (const std::string kept = record::pacing_text(host.value("pacing", json())); !kept.empty()) fmt::print("    {}\n", kept);
       for (const json& link : host.value("links", json::array())) print_link(key(run, host, link), link, width, elapsed_s);
     }

@@ -23,7 +23,7 @@ TEST_CASE("link slot: a call that waits on a link that is taken out goes on with
     });
   });
   while (!waits) std::this_thread::yield();
-  CHECK(slot.take_out([](int& link) { return link; }) == 1);
+  CHECK(slot.take_out([](int* link) { return *link; }) == 1);
   slot.put_in(std::make_unique<int>(2), [](int&) { return 0; });
   block.join();
   CHECK(used.value() == 2);
@@ -31,7 +31,8 @@ TEST_CASE("link slot: a call that waits on a link that is taken out goes on with
 
 TEST_CASE("link slot: a call without a link ends where its caller does not go on") {
   lab::LinkSlot<int> slot(std::make_unique<int>(1));
-  slot.take_out([](int&) { return 0; });
+  slot.take_out([](int* link) { return *link; });
+  CHECK(slot.take_out([](int* link) { return link == nullptr; }));
   int asked = 0;
   const Used used = slot.use([&] { return ++asked < 3; }, [](int& link, const transport::GoOn&) -> Used { return link; });
   REQUIRE_FALSE(used);

@@ -15,6 +15,17 @@ struct MemoryLink {
   std::condition_variable changed;
   std::deque<transport::Message> queue;
   std::uint64_t bytes = 0, most = 1 << 16;
+  std::uint64_t messages = 0, lost_after = ~std::uint64_t{0};  ///< what the writer sends behind so many comes to nobody
+
+  /// Waits until as many messages have been sent; false: `seconds` have passed.
+  bool wait_until_lost(double seconds) {
+    std::unique_lock lock(mutex);
+    return changed.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return messages >= lost_after; });
+  }
+  void lose() {
+    const std::lock_guard lock(mutex);
+    lost_after = 0;
+  }
 
   template <class Ready>
   tl::expected<void, transport::Failure> wait(std::unique_lock<std::mutex>& lock, const transport::GoOn& go_on, Ready ready) {
@@ -33,10 +44,12 @@ class MemoryOutlet final : public transport::Outlet {
     transport::Message message{std::move(header), {}};
     for (const auto& part : parts) message.payload.insert(message.payload.end(), part.begin(), part.end());
     std::unique_lock lock(link_->mutex);
+    if (link_->messages >= link_->lost_after) return {};
     const auto room = [&] { return link_->queue.empty() || link_->bytes + message.payload.size() <= link_->most; };
     if (auto waited = link_->wait(lock, go_on, room); !waited) return waited;
     link_->bytes += message.payload.size();
     link_->queue.push_back(std::move(message));
+    ++link_->messages;
     link_->changed.notify_all();
     return {};
   }
@@ -60,7 +73,13 @@ class MemoryInlet final : public transport::Inlet {
     link_->changed.notify_all();
     return message;
   }
-  tl::expected<std::optional<transport::Message>, transport::Failure> poll(double) override { return std::nullopt; }
+  tl::expected<std::optional<transport::Message>, transport::Failure> poll(double) override {
+    {
+      const std::lock_guard lock(link_->mutex);
+      if (link_->queue.empty()) return std::optional<transport::Message>();
+    }
+    return next([] { return true; }).map([](transport::Message&& message) { return std::optional(std::move(message)); });
+  }
   transport::EdgeState state() const override { return {}; }
 
  private:

@@ -60,22 +60,25 @@ void add_missing(Page& page, const RunData& run) {
   if (gaps.empty() && restarts.empty()) return;
   page.open_section("Missing samples", "lost hosts");
   for (const ordered_json& restart : restarts)
-    page.paragraph(fmt::format("Host {} was lost; its part was started again and goes on at {} s, with blocks that have forgotten "
-                               "what was before.",
-                               host_of(restart), shown(number(restart, "begin_s"), 9)));
+    page.paragraph(
+        fmt::format("Host {} was lost; its part was started again and goes on at {} s, with blocks that have forgotten "
+                    "what was before.",
+                    host_of(restart), shown(number(restart, "begin_s"), 9)));
   const Table table = table_of(gaps);
   if (table.rows.empty())
     page.paragraph("No connection that another host reads misses a sample.");
   else
-    page.paragraph("These samples do not exist. In their place stands no number, or with gaps: hold the last sample before. All "
-                   "others are exact.");
+    page.paragraph(
+        "These samples do not exist. In their place stands no number, or with gaps: hold the last sample before. All "
+        "others are exact.");
   add_table(page.body(), table);
   std::set<std::string> told;
   for (const ordered_json& restart : restarts)
     if (const std::string host = host_of(restart); told.insert(host).second)
-      page.paragraph(fmt::format("What {0} recorded is not joined with the rest: it lies in restarted/{0}, positions there count "
-                                 "from each part's own begin.",
-                                 host));
+      page.paragraph(
+          fmt::format("What {0} recorded is not joined with the rest: it lies in restarted/{0}, positions there count "
+                      "from each part's own begin.",
+                      host));
   page.close_section();
 }
 

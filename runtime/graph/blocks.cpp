@@ -100,17 +100,27 @@ const BlockDescription* find_type(const Node& node, const Spot& spot, const std:
   return nullptr;
 }
 
+/// The parameter that tells the unit of a block's numbers, or -1.
+int unit_of(const BlockDescription& type) {
+  const int index = type.parameter("unit");
+  return index >= 0 && type.parameters[static_cast<std::size_t>(index)].type == BF_STRING ? index : -1;
+}
+
 void read_parameters(Node& node, const Spot& spot, const std::string& owner, Block& block, Report& report) {
   const auto& described = block.type->parameters;
   for (const auto& p : described) block.parameters.push_back(p.fallback);
   block.parameter_places.assign(described.size(), block.place);
   std::vector<bool> given(described.size(), false);
-  for (const auto& written : written_parameters(node, *block.type, owner, "block", report)) {
+  const auto all = written_parameters(node, *block.type, owner, "block", report);
+  const auto unit =
+      std::find_if(all.begin(), all.end(), [&](const auto& written) { return written.index == unit_of(*block.type); });
+  const std::string own = unit != all.end() && unit->node->is_scalar() ? unit->node->text : "";
+  for (const auto& written : all) {
     const auto i = static_cast<std::size_t>(written.index);
     given[i] = true;
     block.parameter_places[i] = written.node->spot.place();
     const std::string where = fmt::format("{}: parameter '{}'", owner, described[i].name);
-    if (auto value = read_parameter(*written.node, described[i], where, report)) block.parameters[i] = std::move(*value);
+    if (auto value = read_parameter(*written.node, described[i], where, report, own)) block.parameters[i] = std::move(*value);
   }
   for (std::size_t i = 0; i < described.size(); ++i)
     if (described[i].required && !given[i])
@@ -118,6 +128,13 @@ void read_parameters(Node& node, const Spot& spot, const std::string& owner, Blo
 }
 
 }  // namespace
+
+std::string own_unit(const Block& block) {
+  const int index = unit_of(*block.type);
+  if (index < 0) return "";
+  const auto& texts = block.parameters[static_cast<std::size_t>(index)].strings;
+  return texts.empty() ? "" : texts.front();
+}
 
 std::vector<WrittenParameter> written_parameters(Node& node, const BlockDescription& type, const std::string& owner,
                                                  const std::string& skip, Report& report) {

@@ -10,6 +10,9 @@ namespace bodeflow::graph {
 /// place of a wrong value), so that what refers to it can be checked; the report then keeps the graph from being used.
 void read_blocks(Node& node, const Registry& registry, Phase& phase, Report& report);
 
+/// The unit of a block's numbers: what its parameter `unit` says; "" where it says nothing or the block has none.
+std::string own_unit(const Block& block);
+
 /// Values of a map of parameters, nested maps as dotted names.
 struct WrittenParameter {
   int index;

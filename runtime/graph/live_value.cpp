@@ -9,7 +9,7 @@
 namespace bodeflow::graph {
 
 tl::expected<ParameterValue, std::string> read_live_value(const ParameterDescription& description, const std::string& where,
-                                                          const std::string& text) {
+                                                          const std::string& text, const std::string& own_unit) {
   std::error_code error;
   const Source source{"", std::filesystem::current_path(error).string(), true};
   Report report;
@@ -27,7 +27,7 @@ tl::expected<ParameterValue, std::string> read_live_value(const ParameterDescrip
     node.kind = Node::Kind::scalar;
     node.text = std::string(content);
   }
-  auto value = read_parameter(node, description, where, report);
+  auto value = read_parameter(node, description, where, report, own_unit);
   if (!value) return tl::unexpected(report.empty() ? where + ": can't be read" : report.problems().front().text);
   return std::move(*value);
 }

@@ -17,6 +17,7 @@ void read_changes(Node& set, double time_s, int index, const BlockIndex& blocks,
   const BlockDescription* type = blocks.type(index);
   if (type == nullptr) return;
   const std::string owner = fmt::format("schedule: block '{}'", blocks.name(index));
+  const std::string unit = own_unit(phase.blocks[static_cast<std::size_t>(index)]);
   for (const auto& written : written_parameters(set, *type, owner, "", report)) {
     const ParameterDescription& described = type->parameters[static_cast<std::size_t>(written.index)];
     const std::string where = fmt::format("{}: parameter '{}'", owner, described.name);
@@ -28,7 +29,7 @@ void read_changes(Node& set, double time_s, int index, const BlockIndex& blocks,
                  fmt::format("{} can't change while the graph runs; live parameters: {}", where, listed(live)));
       continue;
     }
-    if (auto value = read_parameter(*written.node, described, where, report))
+    if (auto value = read_parameter(*written.node, described, where, report, unit))
       phase.schedule.push_back({time_s, index, written.index, std::move(*value), written.node->spot.place()});
   }
 }

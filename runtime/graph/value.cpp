@@ -13,8 +13,8 @@ namespace {
 /// Reads one parameter; every function returns false once it has reported a problem.
 class Reader {
  public:
-  Reader(const ParameterDescription& description, const std::string& where, Report& report)
-      : description_(description), where_(where), report_(report) {
+  Reader(const ParameterDescription& description, const std::string& where, Report& report, const std::string& own_unit)
+      : description_(description), where_(where), report_(report), own_unit_(own_unit) {
     value_.type = description.type;
     value_.given = true;
     value_.rows = 1;
@@ -72,8 +72,13 @@ class Reader {
     return problem(node, fmt::format("found {}, allowed: {}", quote(node.text), range_text(description_)));
   }
 
+  const std::string& unit_for(std::string_view written) const {
+    const bool own = description_.unit.empty() && !own_unit_.empty() && complex_of(written, own_unit_);
+    return own ? own_unit_ : description_.unit;
+  }
+
   bool number(const Node& node, std::string_view written) {
-    const auto x = number_of(written, description_.unit);
+    const auto x = number_of(written, unit_for(written));
     if (!x) return problem(node, x.error());
     value_.numbers.push_back(*x);
     return in_range(node, *x);
@@ -165,7 +170,7 @@ class Reader {
       return number(node.items[0], node.items[0].text) && number(node.items[1], node.items[1].text);
     }
     if (!scalar(node)) return false;
-    const auto value = complex_of(node.text, description_.unit);
+    const auto value = complex_of(node.text, unit_for(node.text));
     if (!value) return problem(node, value.error());
     value_.numbers.push_back(value->real());
     value_.numbers.push_back(value->imag());
@@ -192,6 +197,7 @@ class Reader {
   const ParameterDescription& description_;
   const std::string& where_;
   Report& report_;
+  const std::string& own_unit_;
   ParameterValue value_;
 };
 
@@ -200,8 +206,8 @@ std::string number_text(double x) { return fmt::format("{}", x); }
 }  // namespace
 
 std::optional<ParameterValue> read_parameter(Node& node, const ParameterDescription& description, const std::string& where,
-                                             Report& report) {
-  Reader reader(description, where, report);
+                                             Report& report, const std::string& own_unit) {
+  Reader reader(description, where, report, own_unit);
   if (!reader.read(node)) return {};
   return reader.take();
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "graph/blocks.hpp"
 #include "graph/live_value.hpp"
 
 namespace bodeflow::observe {
@@ -118,9 +119,10 @@ tl::expected<void, std::string> Watch::ask(std::uint64_t generation, const std::
   const auto place = find_parameter(phase, block, parameter);
   if (!place) return Refusal(place.error());
   const auto [b, p] = *place;
-  const ParameterDescription& description =
-      phase.blocks[static_cast<std::size_t>(b)].type->parameters[static_cast<std::size_t>(p)];
-  auto read = graph::read_live_value(description, fmt::format("block '{}': parameter '{}'", block, description.name), value);
+  const graph::Block& live = phase.blocks[static_cast<std::size_t>(b)];
+  const ParameterDescription& description = live.type->parameters[static_cast<std::size_t>(p)];
+  auto read = graph::read_live_value(description, fmt::format("block '{}': parameter '{}'", block, description.name), value,
+                                     graph::own_unit(live));
   if (!read) return Refusal(read.error());
   collect();
   const auto waiting = std::count_if(wishes_.begin() + static_cast<std::ptrdiff_t>(settled_), wishes_.end(),

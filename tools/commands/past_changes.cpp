@@ -32,7 +32,7 @@ tl::expected<execute::PastChange, std::string> change_of(const json& event, cons
   change.position = position.get<std::int64_t>();
   auto read = graph::read_live_value(type.parameters[static_cast<std::size_t>(change.parameter)],
                                      fmt::format("{}.{}", text("block"), text("parameter")),
-                                     value.is_string() ? value.get<std::string>() : value.dump());
+                                     value.is_string() ? value.get<std::string>() : value.dump(), "");
   if (!read) return Failed(read.error());
   change.value = std::move(*read);
   return change;

@@ -111,7 +111,8 @@ std::vector<BlockDescription> generators() {
 }
 
 std::vector<BlockDescription> filters() {
-  return {block("filters.gain", {in(0, "in", BF_ANY), out(0, "out", BF_ANY)}, {gain(), number("offset", "", 0.0)}),
+  return {block("filters.gain", {in(0, "in", BF_ANY), out(0, "out", BF_ANY)},
+                {gain(), number("offset", "", 0.0), parameter("unit", BF_STRING)}),
           block("filters.hold", {in(0, "in"), out(0, "out")}, {whole("factor", 1)}),
           block("filters.sum", {in(0, "a"), in(1, "b"), in(2, "c", BF_F64, true), out(0, "out")}, {}),
           block("filters.through", {in(0, "x"), out(0, "x")}, {})};

@@ -40,6 +40,28 @@ TEST_CASE("graph: numbers are in the parameter's unit, exactly as the literal wo
   CHECK(frequency("10 kHz").given);
 }
 
+TEST_CASE("graph: numbers of a block that tells their unit are in that unit") {
+  const auto offset = [](const std::string& text, const std::string& more) {
+    return second(with("filters.gain", "offset: " + text + more), "offset").numbers.at(0);
+  };
+  CHECK(offset("5 mV", "") == 5e-3);  // no unit is told: SI
+  CHECK(offset("5 mV", ", unit: V") == 5e-3);
+  CHECK(offset("5 mV", ", unit: mV") == 5.0);
+  CHECK(offset("2 V", ", unit: mV") == 2000.0);
+  CHECK(offset("5", ", unit: mV") == 5.0);
+  CHECK(offset("100 rpm", ", unit: rpm") == 100.0);
+  CHECK(offset("100 rpm", ", unit: mV") == Approx(10.4719755));  // another dimension: SI
+  CHECK(offset("50 %", ", unit: mV") == 0.5);
+  const Graph graph = good(R"(bodeflow: 1
+blocks:
+  s: {block: generators.sine}
+  x: {block: filters.gain, unit: mV}
+connections: [s -> x]
+schedule: [{at: 1 s, block: x, set: {gain: 3 V}}]
+)");
+  CHECK(graph.phases.at(0).schedule.at(0).value.numbers == std::vector<double>{3000.0});
+}
+
 TEST_CASE("graph: defaults stand where nothing is written, at the block's place") {
   const Graph graph = good("bodeflow: 1\nblocks:\n  s: {block: generators.sine}\n");
   CHECK_FALSE(value(graph, "frequency").given);

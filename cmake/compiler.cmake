@@ -13,9 +13,3 @@ if(BODEFLOW_SANITIZE)
     add_compile_options(-Wno-maybe-uninitialized)  # false alarms on std::function in instrumented code (GCC bug 105562)
   endif()
 endif()
-
-# With CMAKE_UNITY_BUILD (`./run` and `./test` set it) eight files of a target are compiled as one, which takes a third of the
-# time. Files that can't share one translation unit with their neighbours, such as for names in anonymous namespaces, stand alone.
-function(bodeflow_alone)
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-endfunction()

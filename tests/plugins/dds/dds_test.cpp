@@ -59,7 +59,7 @@ TEST_CASE("a topic that carries something else than stated is refused by name") 
   const Folder folder;
   Process subscribe(with_errors(graph(ours("record_topic.yaml"), folder.path() / "a", {"topic=other", "rate=2 kHz"})));
   Process publish(graph(ours("publish.yaml"), folder.path() / "b", {"topic=other"}));
-  CHECK(subscribe.wait() == 1);
+  CHECK(subscribe.wait() == 5);
   CHECK(subscribe.output().find("block 'subscribe': topic 'other' carries 1000.000000 samples/s; stated here: 2000.000000 Hz") !=
         std::string::npos);
 }
@@ -97,7 +97,7 @@ blocks:
 record: [subscribe.out]
 )");
   Process run(with_errors(graph((folder.path() / "graph.yaml").string(), folder.path() / "a", {})));
-  CHECK(run.wait() == 1);
+  CHECK(run.wait() == 5);
   CHECK(run.output().find("block 'subscribe': topic 'nobody': no writer came within 0.3 s") != std::string::npos);
 }
 
@@ -186,7 +186,7 @@ record: [subscribe.out]
     shell("sleep 1.5");
     writer.signal(9);
     CHECK(run.prints("topic 'dying' stands still: nothing came for 0.8 s", 3.5));
-    CHECK(run.wait() == 1);
+    CHECK(run.wait() == 5);
     INFO(run.output());
     CHECK(run.output().find("block 'subscribe': topic 'dying': ") != std::string::npos);
   }

@@ -1,4 +1,5 @@
 #include "catch.hpp"
+#include "graph/live_value.hpp"
 #include "registry.hpp"
 
 namespace bodeflow::graph {
@@ -52,14 +53,9 @@ TEST_CASE("graph: numbers of a block that tells their unit are in that unit") {
   CHECK(offset("100 rpm", ", unit: rpm") == 100.0);
   CHECK(offset("100 rpm", ", unit: mV") == Approx(10.4719755));  // another dimension: SI
   CHECK(offset("50 %", ", unit: mV") == 0.5);
-  const Graph graph = good(R"(bodeflow: 1
-blocks:
-  s: {block: generators.sine}
-  x: {block: filters.gain, unit: mV}
-connections: [s -> x]
-schedule: [{at: 1 s, block: x, set: {gain: 3 V}}]
-)");
-  CHECK(graph.phases.at(0).schedule.at(0).value.numbers == std::vector<double>{3000.0});
+  ParameterDescription live;
+  live.type = BF_NUMBER;
+  CHECK(read_live_value(live, "offset", "2 V", "mV").value().numbers == std::vector<double>{2000.0});
 }
 
 TEST_CASE("graph: defaults stand where nothing is written, at the block's place") {

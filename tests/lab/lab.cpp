@@ -71,10 +71,11 @@ std::vector<std::string> TestLab::agent_command(const std::string& name, const s
   return merged(command);
 }
 
-Process& TestLab::agent(const std::string& name, const std::vector<std::string>& more, const std::vector<std::string>& before) {
+Process& TestLab::agent(const std::string& name, const std::vector<std::string>& more, const std::vector<std::string>& before,
+                        int most_s) {
   std::vector<std::string> all = before;
   append(all, agent_command(name, more));
-  agents_.push_back(std::make_unique<Process>(all));
+  agents_.push_back(std::make_unique<Process>(all, most_s));
   INFO(agents_.back()->output());
   REQUIRE(agents_.back()->prints("is there"));
   return *agents_.back();

@@ -36,8 +36,10 @@ class TestLab {
   TestLab() : options_{"--loopback", "--domain", std::to_string(test_domain())} {}
   explicit TestLab(std::vector<std::string> options) : options_(std::move(options)) {}
 
-  /// Starts an agent; `before` stands in front of the command (a namespace), `more` behind it. Returns when it is there.
-  Process& agent(const std::string& name, const std::vector<std::string>& more = {}, const std::vector<std::string>& before = {});
+  /// Starts an agent; `before` stands in front of the command (a namespace), `more` behind it; it ends after
+  /// `most_s`. Returns when it is there.
+  Process& agent(const std::string& name, const std::vector<std::string>& more = {}, const std::vector<std::string>& before = {},
+                 int most_s = 60);
   std::vector<std::string> agent_command(const std::string& name, const std::vector<std::string>& more = {}) const;
   /// The command `bodeflow run GRAPH` in this lab, with its messages on standard output.
   std::vector<std::string> run(const std::string& graph, const std::string& out, const std::vector<std::string>& more = {}) const;

@@ -16,7 +16,7 @@ constexpr double kGrowth = 6.0;
 
 void soak(int seconds) {
   TestLab lab;
-  lab.agent("bench");
+  lab.agent("bench", {}, {}, seconds + 180);
   const std::string graph = "bodeflow: 1\nrun: {clock: realtime, duration: " + std::to_string(seconds) + R"( s, seed: 1}
 blocks:
   source: {block: generators.noise, sample_rate: 100 kHz, channels: 2}
